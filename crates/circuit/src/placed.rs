@@ -9,7 +9,8 @@
 //! `file` (relative to the table), `x`, `y` and `z` (µm) are needed. These are understood: `id` or
 //! `node_id`; angles `rotation_x`, `rotation_y`, `rotation_z` in degrees (R = Rx Ry Rz), or with
 //! `rotation_w` a quaternion, as `neurotess nodes` writes it; `scale`; `recenter` (true or false).
-//! All other columns are attributes: numbers if all their cells are, else text.
+//! All other columns are attributes: numbers if all their cells are, else text. A row with neither a file nor a place
+//! is a node that shows nothing, such as `neurotess nodes` writes of virtual ones.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,7 +21,7 @@ use neurotess_formats::read_regular;
 use crate::listed::{self, Cell};
 use crate::sonata::{folder_of, orientation};
 use crate::table;
-use crate::{Attribute, Circuit, CircuitError, Fault};
+use crate::{Attribute, Circuit, CircuitError, Fault, Warning};
 
 /// Opens a table. What is wrong with one row does not keep the others from showing.
 pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
@@ -48,7 +49,15 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Circuit, CircuitError> {
         let none = CircuitError::new(&file, "column file", Fault::Missing);
         return Err(failures.into_iter().next().unwrap_or(none));
     }
-    let mut circuit = listed::circuit(path, "table", &cells, vec![], failures);
+    let mut warnings = Vec::new();
+    let nowhere = |cell: &&Cell| !cell.placement.0.is_finite();
+    let count = cells.iter().filter(nowhere).count() as u64;
+    if count > 0 {
+        let message = format!("{count} rows have neither a file nor a place: they show nothing");
+        let warning = Warning::new(&file, "column file", "row_without_cell", message);
+        warnings.push(warning.times(count));
+    }
+    let mut circuit = listed::circuit(path, "table", &cells, warnings, failures);
     for attribute in circuit.populations[0].attributes.values_mut() {
         if let Some(numbers) = numbers(attribute) {
             *attribute = numbers;
@@ -133,9 +142,11 @@ impl Columns {
             parsed.ok_or_else(|| fault(column, not(text, "a number")))
         };
         let mut position = DVec3::ZERO;
+        let name = text(self.file);
+        let nothing = name.is_empty() && self.position.iter().all(|&place| text(place).is_empty());
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             position[axis] = number(Some(self.position[axis]), name, f64::NAN)?;
-            if position[axis].is_nan() {
+            if position[axis].is_nan() && !nothing {
                 return Err(fault(name, Fault::Missing));
             }
         }
@@ -171,7 +182,6 @@ impl Columns {
             "true" | "1" | "yes" => true,
             other => return Err(fault("recenter", not(other, "true or false"))),
         };
-        let name = text(self.file);
         let others = self.others.iter();
         let attributes: BTreeMap<String, String> = others
             .filter(|(_, place)| !text(*place).is_empty())
@@ -231,6 +241,26 @@ mod tests {
         assert_eq!(cells.attributes["depth"].number(1), Some(12.5));
         // Neither file is there, which is one warning of both.
         assert_eq!(circuit.warnings.len(), 1);
+    }
+
+    #[test]
+    fn rows_of_virtual_nodes_show_nothing() {
+        let text = "file,node_id,x,y,z,layer\na.swc,3,1,2,3,L5\n,4,,,,L5\n,5,7,8,9,\n";
+        let circuit = read_text(text).expect("a table");
+        let cells = &circuit.populations[0];
+        assert_eq!(
+            (&cells.ids[..], circuit.failures.len()),
+            (&[3, 4, 5][..], 0)
+        );
+        assert_eq!(
+            (cells.position(1), cells.position(2)),
+            (None, Some(DVec3::new(7.0, 8.0, 9.0)))
+        );
+        let codes: Vec<_> = circuit.warnings.iter().map(|w| (w.code, w.count)).collect();
+        assert_eq!(codes, [("row_without_cell", 1), ("morphology_missing", 1)]);
+        // A cell needs its place, and a place all of its numbers.
+        let some = read_text("file,x,y,z\na,1,2,3\nb,,,\n,1,,\n").expect("one row");
+        assert_eq!((some.populations[0].len(), some.failures.len()), (1, 2));
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Tables: CSV, or TSV for files of that name.
 
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
+use neurotess::formats;
 use neurotess::output::OutputError;
 
 use super::output;
@@ -13,7 +14,7 @@ use super::output;
 pub(crate) struct TableArgs {
     /// File of the table, with tabs if it ends in .tsv; - for standard output
     #[arg(long, value_name = "FILE", default_value = "-")]
-    pub(crate) csv: std::path::PathBuf,
+    pub(crate) csv: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]
     pub(crate) force: bool,
@@ -68,6 +69,34 @@ fn delimiter(out: &Path) -> u8 {
     }
 }
 
+/// A path as a table names it that goes to `out`: from the table's folder on if it is below that, so that both may be
+/// moved together, else from the root on. So it means the same wherever the table is read.
+pub(crate) fn named_from(out: &Path, path: &Path) -> String {
+    let (file, member) = formats::member(path);
+    let path = rooted(file);
+    let folder = (!output::is_standard(out)).then(|| rooted(out));
+    let folder = folder.as_deref().and_then(Path::parent);
+    let below = folder.and_then(|folder| path.strip_prefix(folder).ok());
+    let named = below.unwrap_or(&path).display();
+    member.map_or_else(|| named.to_string(), |member| format!("{named}#{member}"))
+}
+
+/// The path from the root on, without `..`, which would need the folder to stay in which the command runs. The name
+/// itself is no link that is followed: one into a store of data has the extension, the other may not.
+fn rooted(path: &Path) -> PathBuf {
+    // Only where the system knows no current folder is there none; then the path stays as it is.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    if !path.components().any(|part| part == Component::ParentDir) {
+        return path;
+    }
+    let (folder, name) = (path.parent(), path.file_name());
+    let folder = folder.and_then(|folder| folder.canonicalize().ok());
+    match (folder, name) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => path,
+    }
+}
+
 /// A number as a cell: nothing where there is none.
 pub(crate) fn cell(number: f64) -> String {
     match number.is_finite() {
@@ -79,6 +108,29 @@ pub(crate) fn cell(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn paths_in_a_table_mean_the_same_wherever_it_is_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let root = folder.path().canonicalize().expect("it is there");
+        std::fs::create_dir_all(root.join("a/b")).expect("made");
+        std::fs::write(root.join("a/m.h5"), "").expect("written");
+        let named = |out: &str, path: &str| named_from(&root.join(out), &root.join(path));
+        let whole = |path: &str| root.join(path).display().to_string();
+        assert_eq!(
+            named("t.csv", "a/c.swc"),
+            Path::new("a/c.swc").display().to_string()
+        );
+        assert_eq!(
+            named("a/../t.csv", "a/b/../c.swc"),
+            named("t.csv", "a/c.swc")
+        );
+        assert_eq!(named("a/b/t.csv", "a/c.swc"), whole("a/c.swc"));
+        assert_eq!(named("a/b/t.csv", "a/b/../m.h5#c/d"), whole("a/m.h5#c/d"));
+        let out = Path::new("-");
+        assert_eq!(named_from(out, &root.join("a/c.swc")), whole("a/c.swc"));
+        assert!(Path::new(&named_from(out, Path::new("c.swc"))).is_absolute());
+    }
 
     #[test]
     fn tsv_has_tabs_and_no_number_is_empty() {

@@ -1,15 +1,16 @@
 //! `neurotess nodes`: the nodes of a circuit as a table.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use neurotess::circuit::{Attribute, Circuit, NodeRef};
+use neurotess::formats;
 use serde::Serialize;
 
 use crate::io::circuits;
 use crate::io::output::{is_standard, reserve_standard};
-use crate::io::table::{self, Rows, TableArgs, cell};
+use crate::io::table::{self, Rows, TableArgs, cell, named_from};
 use crate::options::cells::CellArgs;
 use crate::report::{Failure, Reporter, usage};
 
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &NodesArgs, reporter: &Reporter) -> anyhow::Result<()> {
         .map_err(|Failure(why)| anyhow::anyhow!(why))?;
     let attributes = attributes(&circuit, args.columns.as_deref())?;
     let columns = table::write(&args.table, |rows| {
-        fill(rows, &circuit, &nodes, &attributes)
+        fill(rows, &args.table.csv, &circuit, &nodes, &attributes)
     })?;
     if !is_standard(&args.table.csv) {
         let out = args.table.csv.display();
@@ -102,17 +103,37 @@ const PLACE: [&str; 13] = [
     "recenter",
 ];
 
+/// Columns before those of attributes that say what the attribute of their name says.
+const OF_ATTRIBUTES: [&str; 3] = ["population", "morphology", "recenter"];
+
+/// The column of an attribute; none if one of [`PLACE`] has it. One that would be read as something else gets
+/// another name.
+fn column(attribute: &str) -> Option<String> {
+    let is = |name: &str| name.eq_ignore_ascii_case(attribute);
+    if OF_ATTRIBUTES.contains(&attribute) {
+        return None;
+    }
+    let taken = PLACE.into_iter().any(is) || is("id");
+    Some(match taken {
+        true => format!("{attribute}_attribute"),
+        false => attribute.to_owned(),
+    })
+}
+
+/// `out`: where the table goes, from which the paths in it are named.
 fn fill(
     rows: &mut Rows,
+    out: &Path,
     circuit: &Circuit,
     nodes: &[NodeRef],
     attributes: &[String],
 ) -> anyhow::Result<Vec<String>> {
-    let columns: Vec<String> = PLACE
-        .into_iter()
-        .map(str::to_owned)
-        .chain(attributes.iter().cloned())
+    let of_attributes: Vec<(&String, String)> = attributes
+        .iter()
+        .filter_map(|name| Some((name, column(name)?)))
         .collect();
+    let names = of_attributes.iter().map(|(_, column)| column.clone());
+    let columns: Vec<String> = PLACE.into_iter().map(str::to_owned).chain(names).collect();
     rows.write_record(&columns)?;
     let mut record = Vec::with_capacity(columns.len());
     for node in nodes {
@@ -120,14 +141,17 @@ fn fill(
         let row = node.row as usize;
         let template = population.templates.get(row).copied().flatten();
         let path = template.map(|id| circuit.templates[id.index()].path.as_path());
-        let name = path
-            .and_then(std::path::Path::file_stem)
-            .unwrap_or_default();
+        let text = |name: &str| population.attributes.get(name)?.text(row);
         record.clear();
-        record.push(population.name.clone());
+        let own = text("population").unwrap_or(&population.name);
+        record.push(own.to_owned());
         record.push(population.ids[row].to_string());
-        record.push(name.to_string_lossy().into_owned());
-        record.push(path.map_or(String::new(), |path| path.display().to_string()));
+        record.push(match (text("morphology"), path) {
+            (Some(name), _) => name.to_owned(),
+            (None, Some(path)) => name_of(path),
+            (None, None) => String::new(),
+        });
+        record.push(path.map_or(String::new(), |path| named_from(out, path)));
         let position = population.position(row);
         for axis in 0..3 {
             record.push(cell(position.map_or(f64::NAN, |p| p[axis])));
@@ -137,8 +161,8 @@ fn fill(
         record.push(cell(population.scales.get(row).copied().unwrap_or(1.0)));
         let recentered = population.recentered.get(row).copied().unwrap_or(true);
         record.push(recentered.to_string());
-        for name in attributes {
-            record.push(match population.attributes.get(name) {
+        for (name, _) in &of_attributes {
+            record.push(match population.attributes.get(*name) {
                 Some(attribute @ Attribute::Text { .. }) => {
                     attribute.text(row).unwrap_or_default().to_owned()
                 }
@@ -149,4 +173,33 @@ fn fill(
         rows.write_record(&record)?;
     }
     Ok(columns)
+}
+
+/// The name of a morphology: that of its file, or its own in a container.
+fn name_of(path: &Path) -> String {
+    let (file, member) = formats::member(path);
+    match member {
+        Some(member) => member.to_owned(),
+        None => file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_column_is_there_twice_or_read_as_another() {
+        let named = |attribute| column(attribute).unwrap_or_default();
+        assert_eq!(named("layer"), "layer");
+        assert_eq!([named("morphology"), named("recenter")], ["", ""]);
+        assert_eq!(
+            [named("scale"), named("ID")],
+            ["scale_attribute", "ID_attribute"]
+        );
+    }
 }

@@ -1,4 +1,6 @@
-//! Circuits as other programs lay them out, from wherever the command runs.
+//! Circuits as other programs lay them out, from wherever the command runs, and tables made of them.
+
+use std::path::Path;
 
 use hdf5_pure::FileBuilder;
 use serde_json::Value;
@@ -143,4 +145,62 @@ fn a_simulation_names_its_circuit_and_its_outputs_from_everywhere() {
             assert_eq!(info["reports"][0]["n_spikes"], 1);
         }
     }
+}
+
+#[neurotess_testing::test]
+fn a_table_of_nodes_opens_where_it_stands() {
+    let work = Work::new();
+    circuit(&work);
+    work.file("aside/x/note.txt", "");
+    for (folder, input, out) in [
+        ("", "deep/c", "aside/t.csv"),
+        ("", "deep/c", "t.csv"),
+        ("deep/c", ".", "../../aside/x/t.csv"),
+        ("aside/x", "../../deep/c", "t.tsv"),
+        ("deep", "c", "c/t.csv"),
+    ] {
+        run_in(&work, folder, &format!("nodes {input} --csv {out} --force")).exits(0);
+        let table = Path::new(folder).join(out);
+        let text = work.text(&table.display().to_string());
+        let delimiter = if out.ends_with(".tsv") { '\t' } else { ',' };
+        let head: Vec<&str> = text
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .split(delimiter)
+            .collect();
+        for name in ["morphology", "recenter", "population", "file"] {
+            let count = head.iter().filter(|head| **head == name).count();
+            assert_eq!(count, 1, "{name} in {head:?}");
+        }
+        let here = table.parent().expect("a parent").display().to_string();
+        let name = table.file_name().expect("a name").display().to_string();
+        for (folder, input) in [(here.as_str(), name), ("", table.display().to_string())] {
+            let info = info(&work, folder, &input);
+            assert_eq!([&info["n_neurons"], &info["n_shown"]], [4, 2], "{text}");
+            assert_eq!(info["bbox"]["max"], serde_json::json!([50.0, 0.25, 0.0]));
+            let warnings = info["warnings"].as_array().expect("a list");
+            assert_eq!(warnings.len(), 1, "{warnings:?}");
+            assert_eq!(
+                (&warnings[0]["code"], &warnings[0]["count"]),
+                (&"row_without_cell".into(), &2.into())
+            );
+        }
+    }
+    // What was read from a table is written as it was.
+    let once = work.run("nodes t.csv").exits(0).stdout();
+    work.file("aside/again.csv", &once);
+    assert_eq!(work.run("nodes aside/again.csv").exits(0).stdout(), once);
+    // From standard output it may go anywhere.
+    let cell = work
+        .path("deep/c/morph/cell.swc")
+        .canonicalize()
+        .expect("there");
+    let named = once.lines().nth(1).and_then(|row| row.split(',').nth(3));
+    let named = Path::new(named.expect("a file")).canonicalize();
+    assert_eq!(named.expect("there"), cell);
+    let meshed = run_in(&work, "aside", "mesh t.csv -o m --level 0 --json")
+        .exits(0)
+        .json();
+    assert_eq!(meshed.as_array().map(Vec::len), Some(2));
 }
