@@ -50,6 +50,8 @@ mod text;
 mod traced;
 mod warning;
 mod write;
+#[cfg(feature = "neuroml")]
+mod xml;
 
 use std::path::Path;
 

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use neurotess_morphology::NeuriteKind;
 
-use super::xml::{Group, Records};
+use super::records::{Group, Records};
 
 /// How much a word tells: the greater counts where groups overlap.
 type Word = (u8, NeuriteKind);
@@ -24,7 +24,7 @@ pub(super) fn kinds(records: &Records) -> Vec<NeuriteKind> {
             }
         }
     }
-    let kind = |segment: &super::xml::Segment| {
+    let kind = |segment: &super::records::Segment| {
         let by_group = of_segment.get(&segment.id).copied();
         let word = by_group.or_else(|| of_name(&segment.name));
         word.map_or(NeuriteKind::UNDEFINED, |(_, kind)| kind)

@@ -7,7 +7,7 @@
 //! the first is read, and networks are left out, both with a warning.
 
 mod kinds;
-mod xml;
+mod records;
 
 use std::collections::HashMap;
 
@@ -15,10 +15,10 @@ use glam::DVec3;
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 
 use crate::sample::Sample;
-use crate::text::{Located, refuse_other_text};
+use crate::text::Located;
 use crate::warning::Warnings;
-use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
-use xml::{Records, Segment};
+use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text, xml};
+use records::{Records, Segment};
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
@@ -31,9 +31,8 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
 }
 
 fn interpret(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Located<Morphology> {
-    refuse_other_text(bytes)?;
-    let text = String::from_utf8_lossy(bytes);
-    let records = xml::records(&text)?;
+    let text = xml::text(bytes)?;
+    let records = records::records(&text)?;
     if records.segments.is_empty() {
         return Err((1, Fault::NoMorphology));
     }

@@ -134,6 +134,25 @@ fn faults_name_line_and_remedy() {
     }
 }
 
+#[neurotess_testing::test]
+fn only_ends_directly_in_a_segment_are_places() {
+    let m = morphology(
+        &(segment(0, "soma", "", SPHERE)
+            + &segment(
+                1,
+                "dend",
+                "<parent segment=\"0\"/><properties><proximal translationStart=\"1\"/></properties>",
+                [Some([0., 5., 0., 2.]), Some([0., 25., 0., 1.])],
+            )
+            + "<segmentGroup id=\"dendrite_group\"><member segment=\"1\"/>\
+               <inhomogeneousParameter id=\"p\" variable=\"p\" metric=\"Path Length from root\">\
+               <proximal translationStart=\"0\"/><distal normalizationEnd=\"1\"/>\
+               </inhomogeneousParameter></segmentGroup>"),
+    );
+    assert_eq!(Measures::of(&m).length, 20.0);
+    assert_eq!(m.soma().map(|soma| soma.radius), Some(5.0));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(neurotess_testing::cases(300, 1500)))]
     #[neurotess_testing::test]

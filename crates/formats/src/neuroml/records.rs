@@ -1,0 +1,151 @@
+//! From elements to records: segments and groups of the first morphology.
+
+use crate::sample::Sample;
+use crate::text::Located;
+use crate::xml::{Document, Element, Part};
+
+/// A frustum of a cell.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Segment {
+    pub(super) id: i64,
+    pub(super) name: String,
+    pub(super) line: u64,
+    /// Number of the parent, and how far along it this one begins: 0 at its start, 1 at its end.
+    pub(super) parent: Option<(i64, f64)>,
+    pub(super) proximal: Option<Sample>,
+    pub(super) distal: Option<Sample>,
+}
+
+/// Segments that belong together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Group {
+    pub(super) id: String,
+    /// What it is, in the terms of the NeuroLex and Gene ontologies.
+    pub(super) term: String,
+    pub(super) members: Vec<i64>,
+    /// Other groups, by name.
+    pub(super) includes: Vec<String>,
+}
+
+/// What is of interest in a file.
+#[derive(Default)]
+pub(super) struct Records {
+    /// Of the first morphology.
+    pub(super) segments: Vec<Segment>,
+    pub(super) groups: Vec<Group>,
+    pub(super) notes: String,
+    /// Morphologies in the file, and the line of the second.
+    pub(super) morphologies: u64,
+    pub(super) second: u64,
+    /// Placed cells of networks, and the line of the first.
+    pub(super) instances: u64,
+    pub(super) first_instance: u64,
+}
+
+/// Reads the elements of a file.
+pub(super) fn records(text: &str) -> Located<Records> {
+    let mut document = Document::new(text);
+    let mut records = Records::default();
+    // In the notes of the first cell.
+    let mut in_notes = false;
+    while let Some(part) = document.next_part()? {
+        match part {
+            Part::Begin(element) => {
+                in_notes |= element.name == "notes" && records.notes.is_empty();
+                records.element(&element, document.parent())?;
+            }
+            Part::Text(text) if in_notes => records.notes.push_str(&text),
+            Part::Text(_) => {}
+            Part::End(_) => in_notes = false,
+        }
+    }
+    Ok(records)
+}
+
+impl Records {
+    /// Takes an element in, by its name and by what it is directly in: `<proximal>` also stands in
+    /// `<inhomogeneousParameter>`, where it is no place.
+    fn element(&mut self, element: &Element, parent: &str) -> Located<()> {
+        match (parent, &*element.name) {
+            (_, "morphology") => {
+                self.morphologies += 1;
+                if self.morphologies == 2 {
+                    self.second = element.line;
+                }
+            }
+            (_, "instance") => {
+                self.instances += 1;
+                if self.instances == 1 {
+                    self.first_instance = element.line;
+                }
+            }
+            (parent, name) if self.morphologies == 1 => match parent {
+                "morphology" => self.of_morphology(element, name)?,
+                "segment" => self.of_segment(element, name)?,
+                "segmentGroup" => self.of_group(element, name)?,
+                _ => {}
+            },
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn of_morphology(&mut self, element: &Element, name: &str) -> Located<()> {
+        match name {
+            "segment" => self.segments.push(Segment {
+                id: element.whole("id")?,
+                name: element.attribute("name").unwrap_or_default(),
+                line: element.line,
+                ..Segment::default()
+            }),
+            "segmentGroup" => self.groups.push(Group {
+                id: element.attribute("id").unwrap_or_default(),
+                term: element.attribute("neuroLexId").unwrap_or_default(),
+                ..Group::default()
+            }),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn of_segment(&mut self, element: &Element, name: &str) -> Located<()> {
+        let Some(segment) = self.segments.last_mut() else {
+            return Ok(());
+        };
+        match name {
+            "parent" => {
+                let id = element.whole("segment")?;
+                let along = element.real_if_any("fractionAlong")?.unwrap_or(1.0);
+                if !(0.0..=1.0).contains(&along) {
+                    return Err(element.fault("fractionAlong", along.to_string()));
+                }
+                segment.parent = Some((id, along));
+            }
+            "proximal" => segment.proximal = Some(end(element)?),
+            "distal" => segment.distal = Some(end(element)?),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn of_group(&mut self, element: &Element, name: &str) -> Located<()> {
+        let Some(group) = self.groups.last_mut() else {
+            return Ok(());
+        };
+        match name {
+            "member" => group.members.push(element.whole("segment")?),
+            "include" => group.includes.extend(element.attribute("segmentGroup")),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// An end of a segment; both have diameters.
+fn end(element: &Element) -> Located<Sample> {
+    Ok(Sample {
+        position: element.reals(["x", "y", "z"])?,
+        radius: element.real("diameter")? / 2.0,
+        line: element.line,
+    })
+}
