@@ -98,10 +98,13 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// What the element that was begun last is directly in; empty for the outermost.
-    pub(crate) fn parent(&self) -> &str {
-        let above = self.open.len().checked_sub(2);
-        above.map_or("", |i| &self.open[i])
+    /// What the element that was begun last is in, the inner one last; empty outside.
+    pub(crate) fn parents(&self) -> [&str; 2] {
+        let above = |levels: usize| {
+            let index = self.open.len().checked_sub(levels + 1);
+            index.map_or("", |i| &self.open[i])
+        };
+        [above(2), above(1)]
     }
 
     /// Counts the lines up to a byte.

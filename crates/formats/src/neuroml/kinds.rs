@@ -1,77 +1,159 @@
 //! What segments are, by the groups that they are in or by their names.
+//!
+//! Groups overlap: `all` has everything, a group for each channel has what the channel is in. So those that are
+//! named exactly as the conventions of NeuroML say (`soma_group`, `axon_group`, `dendrite_group`) come first; of all
+//! others the one with the fewest segments says most. A group named for two kinds (`soma_dends`) says nothing. Which
+//! dendrite a segment is of may be told by other groups than that it is one.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use neurotess_morphology::NeuriteKind;
 
-use super::records::{Group, Records};
+use super::members::Members;
+use super::records::{Records, Segment};
 
-/// How much a word tells: the greater counts where groups overlap.
-type Word = (u8, NeuriteKind);
+/// What a name or a term says.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Part {
+    Apical,
+    Basal,
+    Axon,
+    Soma,
+    /// Of whatever sort.
+    Dendrite,
+}
 
-/// Kind of each segment, in order.
-pub(super) fn kinds(records: &Records) -> Vec<NeuriteKind> {
-    let groups: HashMap<&str, &Group> = records.groups.iter().map(|g| (&*g.id, g)).collect();
-    let mut of_segment: HashMap<i64, Word> = HashMap::new();
+/// What a group says of its segments. The least counts.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Word {
+    /// How many segments the group has.
+    size: usize,
+    part: Part,
+}
+
+/// The best words on a segment so far.
+#[derive(Clone, Copy, Default)]
+struct Words {
+    /// Of groups that are named as the conventions say.
+    exact: Option<Word>,
+    /// Of groups with a term of an ontology.
+    term: Option<Word>,
+    /// Of groups with a name that tells something.
+    name: Option<Word>,
+    /// Of whatever groups say which dendrite it is.
+    dendrite: Option<Word>,
+}
+
+/// Kind of each segment, in order. `parents`: index of each one's parent.
+pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<NeuriteKind> {
+    let members = Members::of(records, parents);
+    let mut words: HashMap<usize, Words> = HashMap::new();
     for group in &records.groups {
-        let Some(word) = of_term(&group.term).or_else(|| of_name(&group.id)) else {
+        let exact = of_exact_name(&group.id);
+        let term = of_term(&group.term);
+        let Some(part) = exact.or(term).or_else(|| of_name(&group.id)) else {
             continue;
         };
-        for id in members(group, &groups) {
-            let known = of_segment.entry(id).or_insert(word);
-            if word.0 > known.0 {
-                *known = word;
+        let segments = members.all(group);
+        let size = segments.len();
+        let word = Word { size, part };
+        for segment in segments {
+            let known = words.entry(segment).or_default();
+            put(
+                match (exact, term) {
+                    (Some(_), _) => &mut known.exact,
+                    (None, Some(_)) => &mut known.term,
+                    (None, None) => &mut known.name,
+                },
+                word,
+            );
+            if matches!(part, Part::Apical | Part::Basal) {
+                put(&mut known.dendrite, word);
             }
         }
     }
-    let kind = |segment: &super::records::Segment| {
-        let by_group = of_segment.get(&segment.id).copied();
-        let word = by_group.or_else(|| of_name(&segment.name));
-        word.map_or(NeuriteKind::UNDEFINED, |(_, kind)| kind)
+    let kind = |(i, segment): (usize, &Segment)| {
+        let by_group = words.get(&i).and_then(Words::part);
+        let part = by_group.or_else(|| of_name(&segment.name));
+        part.map_or(NeuriteKind::UNDEFINED, Part::kind)
     };
-    records.segments.iter().map(kind).collect()
+    records.segments.iter().enumerate().map(kind).collect()
 }
 
-/// Segments of a group and of all that it includes; circles end.
-fn members(group: &Group, groups: &HashMap<&str, &Group>) -> Vec<i64> {
-    let mut members = Vec::new();
-    let mut seen = HashSet::from([&*group.id]);
-    let mut open = vec![group];
-    while let Some(group) = open.pop() {
-        members.extend(&group.members);
-        for name in &group.includes {
-            if let Some(&included) = groups.get(&**name)
-                && seen.insert(name)
-            {
-                open.push(included);
-            }
+fn put(place: &mut Option<Word>, word: Word) {
+    if place.is_none_or(|known| word < known) {
+        *place = Some(word);
+    }
+}
+
+impl Words {
+    fn part(&self) -> Option<Part> {
+        let least = |a: Option<Word>, b: Option<Word>| a.into_iter().chain(b).min();
+        // A smaller group with a term corrects one with the right name, such as a `dendrite_group` of all segments; a
+        // mere name does not.
+        let sure = least(self.exact, self.term);
+        let word = match sure {
+            Some(_) if sure == self.exact => sure,
+            _ => least(sure, self.name),
+        };
+        match word?.part {
+            Part::Dendrite => Some(self.dendrite.map_or(Part::Dendrite, |word| word.part)),
+            part => Some(part),
         }
     }
-    members
 }
 
-/// Terms of the Gene Ontology and of NeuroLex, as `segmentGroup` has them.
-fn of_term(term: &str) -> Option<Word> {
-    Some(match term {
-        "GO:0097440" | "sao1186862860" => (3, NeuriteKind::APICAL_DENDRITE),
-        "GO:0097441" | "sao1079900774" => (3, NeuriteKind::BASAL_DENDRITE),
-        "GO:0030424" | "sao1770195789" => (2, NeuriteKind::AXON),
-        "GO:0043025" | "sao1044911821" => (2, NeuriteKind::SOMA),
-        "GO:0030425" | "sao1211023249" => (1, NeuriteKind::BASAL_DENDRITE),
+impl Part {
+    fn kind(self) -> NeuriteKind {
+        match self {
+            Self::Apical => NeuriteKind::APICAL_DENDRITE,
+            Self::Basal | Self::Dendrite => NeuriteKind::BASAL_DENDRITE,
+            Self::Axon => NeuriteKind::AXON,
+            Self::Soma => NeuriteKind::SOMA,
+        }
+    }
+}
+
+/// Names that the conventions of NeuroML give.
+fn of_exact_name(name: &str) -> Option<Part> {
+    Some(match name {
+        "soma_group" => Part::Soma,
+        "axon_group" => Part::Axon,
+        "dendrite_group" => Part::Dendrite,
         _ => return None,
     })
 }
 
-/// Names in use: `soma_group`, `axon_group`, `apical_dends`, `dendrite_group`, `basal0`, `Dend_3`.
-fn of_name(name: &str) -> Option<Word> {
+/// Terms of the Gene Ontology and of NeuroLex, as `segmentGroup` has them.
+fn of_term(term: &str) -> Option<Part> {
+    Some(match term.trim() {
+        "GO:0097440" | "sao1186862860" => Part::Apical,
+        "GO:0097441" | "sao1079900774" => Part::Basal,
+        "GO:0030424" | "sao1770195789" => Part::Axon,
+        "GO:0043025" | "sao1044911821" => Part::Soma,
+        "GO:0030425" | "sao1211023249" => Part::Dendrite,
+        _ => return None,
+    })
+}
+
+/// Names in use: `apical_dends`, `basal0`, `Dend_3`, `axonal`. One of two kinds, as `soma_dends`, or of what is not
+/// there, as `no_axon`, says nothing.
+fn of_name(name: &str) -> Option<Part> {
     let name = name.to_ascii_lowercase();
+    let mut words = name.split(|c: char| !c.is_ascii_alphabetic());
+    let denies = |word| matches!(word, "no" | "non" | "not" | "but" | "without" | "except");
+    if words.any(denies) || name.contains("perisoma") {
+        return None;
+    }
     let says = |word: &str| name.contains(word);
-    Some(match () {
-        () if says("apic") => (3, NeuriteKind::APICAL_DENDRITE),
-        () if says("basal") => (3, NeuriteKind::BASAL_DENDRITE),
-        () if says("axon") => (2, NeuriteKind::AXON),
-        () if says("soma") => (2, NeuriteKind::SOMA),
-        () if says("dend") => (1, NeuriteKind::BASAL_DENDRITE),
-        () => return None,
+    let (apical, basal) = (says("apic"), says("basal"));
+    let dendrite = apical || basal || says("dend");
+    Some(match (says("soma"), says("axon"), dendrite) {
+        (true, false, false) => Part::Soma,
+        (false, true, false) => Part::Axon,
+        (false, false, true) if apical != basal && apical => Part::Apical,
+        (false, false, true) if apical != basal => Part::Basal,
+        (false, false, true) => Part::Dendrite,
+        _ => return None,
     })
 }

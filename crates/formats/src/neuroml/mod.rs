@@ -7,6 +7,7 @@
 //! the first is read, and networks are left out, both with a warning.
 
 mod kinds;
+mod members;
 mod records;
 
 use std::collections::HashMap;
@@ -126,10 +127,10 @@ impl Layout {
             return Err((segments[lost].line, Fault::OwnAncestor));
         }
         Ok(Self {
+            kinds: kinds::kinds(records, &parents),
             parents,
             order,
             inner,
-            kinds: kinds::kinds(records),
         })
     }
 

@@ -23,8 +23,27 @@ pub(super) struct Group {
     /// What it is, in the terms of the NeuroLex and Gene ontologies.
     pub(super) term: String,
     pub(super) members: Vec<i64>,
+    /// Many segments at once.
+    pub(super) spans: Vec<Span>,
     /// Other groups, by name.
     pub(super) includes: Vec<String>,
+}
+
+/// Segments that are told by the first and the last.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) spread: Spread,
+    pub(super) from: Option<i64>,
+    pub(super) to: Option<i64>,
+}
+
+/// What a span has.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Spread {
+    /// The way from one segment to another.
+    Path,
+    /// All that is below a segment.
+    Subtree,
 }
 
 /// What is of interest in a file.
@@ -52,7 +71,7 @@ pub(super) fn records(text: &str) -> Located<Records> {
         match part {
             Part::Begin(element) => {
                 in_notes |= element.name == "notes" && records.notes.is_empty();
-                records.element(&element, document.parent())?;
+                records.element(&element, document.parents())?;
             }
             Part::Text(text) if in_notes => records.notes.push_str(&text),
             Part::Text(_) => {}
@@ -65,7 +84,7 @@ pub(super) fn records(text: &str) -> Located<Records> {
 impl Records {
     /// Takes an element in, by its name and by what it is directly in: `<proximal>` also stands in
     /// `<inhomogeneousParameter>`, where it is no place.
-    fn element(&mut self, element: &Element, parent: &str) -> Located<()> {
+    fn element(&mut self, element: &Element, [above, parent]: [&str; 2]) -> Located<()> {
         match (parent, &*element.name) {
             (_, "morphology") => {
                 self.morphologies += 1;
@@ -83,6 +102,7 @@ impl Records {
                 "morphology" => self.of_morphology(element, name)?,
                 "segment" => self.of_segment(element, name)?,
                 "segmentGroup" => self.of_group(element, name)?,
+                "path" | "subTree" if above == "segmentGroup" => self.of_span(element, name)?,
                 _ => {}
             },
             _ => {}
@@ -134,10 +154,35 @@ impl Records {
         };
         match name {
             "member" => group.members.push(element.whole("segment")?),
+            "path" => group.spans.push(Span::new(Spread::Path)),
+            "subTree" => group.spans.push(Span::new(Spread::Subtree)),
             "include" => group.includes.extend(element.attribute("segmentGroup")),
             _ => {}
         }
         Ok(())
+    }
+
+    fn of_span(&mut self, element: &Element, name: &str) -> Located<()> {
+        let group = self.groups.last_mut();
+        let Some(span) = group.and_then(|group| group.spans.last_mut()) else {
+            return Ok(());
+        };
+        match name {
+            "from" => span.from = Some(element.whole("segment")?),
+            "to" => span.to = Some(element.whole("segment")?),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl Span {
+    fn new(spread: Spread) -> Self {
+        Self {
+            spread,
+            from: None,
+            to: None,
+        }
     }
 }
 
