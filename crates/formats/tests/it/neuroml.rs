@@ -257,6 +257,68 @@ fn paths_subtrees_and_included_groups_have_segments() {
     assert_eq!(Measures::of(&m).length_by_type.axon, 50.0);
 }
 
+/// A straight axon from (0, 0, 0) to (50, 0, 0), radius 1, and what hangs on it.
+fn forked(parent: &str, ends: [Option<[f64; 4]>; 2]) -> Measures {
+    let straight = [Some([0., 0., 0., 2.]), Some([50., 0., 0., 2.])];
+    Measures::of(&morphology(
+        &(segment(0, "axon", "", straight) + &segment(1, "axon", parent, ends)),
+    ))
+}
+
+#[neurotess_testing::test]
+fn the_way_to_a_segment_that_begins_elsewhere_is_no_neurite() {
+    let parent = "<parent segment=\"0\"/>";
+    let apart = forked(parent, [Some([50., 20., 0., 1.]), Some([50., 50., 0., 1.])]);
+    assert_eq!((apart.length, apart.n_neurites), (80.0, 2));
+    let half = "<parent segment=\"0\" fractionAlong=\"0.5\"/>";
+    let apart = forked(half, [Some([25., 20., 0., 1.]), Some([25., 50., 0., 1.])]);
+    assert_eq!((apart.length, apart.n_bifurcations), (80.0, 0));
+    let file = cell(
+        &(segment(
+            0,
+            "axon",
+            "",
+            [Some([0., 0., 0., 2.]), Some([50., 0., 0., 2.])],
+        ) + &segment(
+            1,
+            "axon",
+            parent,
+            [Some([50., 20., 0., 1.]), Some([50., 50., 0., 1.])],
+        )),
+    );
+    let read = neuroml::read_bytes(file.as_bytes(), "c.nml", &ReadOptions::default());
+    let warnings = read.expect("read").warnings;
+    let gap = warnings
+        .iter()
+        .find(|w| w.code == "gap")
+        .expect("a warning");
+    assert_eq!((gap.line, gap.count), (Some(4), 1));
+}
+
+#[neurotess_testing::test]
+fn a_segment_that_begins_on_its_parent_forks_there() {
+    // The fraction is missing, is wrong, or is right.
+    for parent in [
+        "<parent segment=\"0\"/>",
+        "<parent segment=\"0\" fractionAlong=\"0.9\"/>",
+        "<parent segment=\"0\" fractionAlong=\"0.5\"/>",
+    ] {
+        for diameter in [2.0, 1.0] {
+            let fork = forked(
+                parent,
+                [Some([25., 0., 0., diameter]), Some([25., 30., 0., 1.])],
+            );
+            assert_eq!((fork.length, fork.n_bifurcations), (80.0, 1), "{parent}");
+            assert_eq!((fork.n_neurites, fork.n_ends), (1, 2), "{parent}");
+        }
+    }
+    // At the surface: attached, the way out of the parent is within it.
+    let half = "<parent segment=\"0\" fractionAlong=\"0.5\"/>";
+    let spine = forked(half, [Some([25., 1., 0., 1.]), Some([25., 31., 0., 1.])]);
+    assert_eq!((spine.n_neurites, spine.n_bifurcations), (1, 1));
+    assert_eq!(spine.length, 81.0);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(neurotess_testing::cases(300, 1500)))]
     #[neurotess_testing::test]
@@ -267,6 +329,10 @@ proptest! {
                 Just("</segment>".to_owned()), Just("<notes>x</notes>".to_owned()),
                 Just("<segmentGroup id=\"soma\">".to_owned()), Just("</segmentGroup>".to_owned()),
                 Just("<include segmentGroup=\"soma\"/>".to_owned()), Just("&x; <".to_owned()),
+                Just("<path>".to_owned()), Just("</path>".to_owned()),
+                Just("<subTree>".to_owned()), Just("</subTree>".to_owned()),
+                (0..6_i64).prop_map(|i| format!("<from segment=\"{i}\"/>")),
+                (0..6_i64).prop_map(|i| format!("<to segment=\"{i}\"/>")),
                 (0..6_i64).prop_map(|i| format!("<segment id=\"{i}\" name=\"soma\">")),
                 (0..6_i64, 0..3).prop_map(|(i, f)| format!(
                     "<parent segment=\"{i}\" fractionAlong=\"{}\"/>", f64::from(f) / 2.0)),
