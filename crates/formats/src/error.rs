@@ -202,8 +202,14 @@ pub enum Fault {
         /// What stands there; empty if nothing.
         text: String,
     },
+    /// A unit of length that is none.
+    #[error("{unit:?} is no unit of length that is known: write nanometer or micrometer")]
+    Unit {
+        /// What stands there.
+        unit: String,
+    },
     /// XML without a cell.
-    #[error("no <morphology> with a <segment>: look for the file that has the cell")]
+    #[error("no <morphology> or <segments> with a <segment>: look for the file that has the cell")]
     NoMorphology,
     /// Two segments have the same number.
     #[error("segment {id} stands in line {first_line} already: number the segments anew")]

@@ -48,6 +48,8 @@ pub mod swc;
 mod text;
 #[cfg(any(feature = "asc", feature = "h5"))]
 mod traced;
+#[cfg(feature = "neuroml")]
+mod unit;
 mod warning;
 mod write;
 #[cfg(feature = "neuroml")]

@@ -13,8 +13,8 @@ use crate::text::{BOM, Located, refuse_other_text};
 pub(crate) enum Part<'a> {
     /// An element begins; one without content ends at once.
     Begin(Element<'a>),
-    /// The element of this name ends.
-    End(String),
+    /// The innermost element ends.
+    End,
     /// Text between elements, without blanks around it.
     Text(String),
 }
@@ -78,10 +78,10 @@ impl<'a> Document<'a> {
                     let line = self.line;
                     return Ok(Some(Part::Begin(Element { start, name, line })));
                 }
-                Ok(Event::End(_)) => match self.open.pop() {
-                    Some(name) => return Ok(Some(Part::End(name))),
-                    None => continue,
-                },
+                Ok(Event::End(_)) => {
+                    self.open.pop();
+                    return Ok(Some(Part::End));
+                }
                 Ok(Event::Text(text)) => {
                     let text: &str = &text;
                     if !text.trim().is_empty() {

@@ -1,4 +1,4 @@
-//! NeuroML 2: cells of segments, frusta that hang on one another anywhere along their parent.
+//! NeuroML 2 and 1: cells of segments, frusta that hang on one another anywhere along their parent.
 //!
 //! A segment has a distal end, and a proximal one where that is not its parent's; both give
 //! **diameters** in µm. One that begins part of the way along its parent gets a point of its own
@@ -12,6 +12,7 @@ mod kinds;
 mod layout;
 mod members;
 mod records;
+mod version_1;
 
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 

@@ -1,5 +1,7 @@
-//! From elements to records: segments and groups of the first morphology.
+//! From elements to records: segments and groups of the first morphology. NeuroML 2 has them in `<morphology>`,
+//! NeuroML 1 (MorphML) in `<segments>` and `<cables>`: see `version_1.rs`.
 
+use super::version_1::Cables;
 use crate::sample::Sample;
 use crate::text::Located;
 use crate::xml::{Document, Element, Part};
@@ -59,6 +61,8 @@ pub(super) struct Records {
     /// Placed cells of networks, and the line of the first.
     pub(super) instances: u64,
     pub(super) first_instance: u64,
+    /// What NeuroML 1 has besides.
+    pub(super) cables: Cables,
 }
 
 /// Reads the elements of a file.
@@ -74,10 +78,11 @@ pub(super) fn records(text: &str) -> Located<Records> {
                 records.element(&element, document.parents())?;
             }
             Part::Text(text) if in_notes => records.notes.push_str(&text),
-            Part::Text(_) => {}
-            Part::End(_) => in_notes = false,
+            Part::Text(text) => records.cables.text(&text),
+            Part::End => in_notes = false,
         }
     }
+    records.finish_version_1()?;
     Ok(records)
 }
 
@@ -86,7 +91,8 @@ impl Records {
     /// `<inhomogeneousParameter>`, where it is no place.
     fn element(&mut self, element: &Element, [above, parent]: [&str; 2]) -> Located<()> {
         match (parent, &*element.name) {
-            (_, "morphology") => {
+            (_, "neuroml" | "morphml") => self.cables.root(element),
+            (_, "morphology" | "segments") => {
                 self.morphologies += 1;
                 if self.morphologies == 2 {
                     self.second = element.line;
@@ -99,6 +105,9 @@ impl Records {
                 }
             }
             (parent, name) if self.morphologies == 1 => match parent {
+                "segments" | "cables" | "cable" | "cablegroup" => {
+                    self.of_version_1(element, parent)?
+                }
                 "morphology" => self.of_morphology(element, name)?,
                 "segment" => self.of_segment(element, name)?,
                 "segmentGroup" => self.of_group(element, name)?,

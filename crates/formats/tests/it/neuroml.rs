@@ -126,7 +126,10 @@ fn faults_name_line_and_remedy() {
             line.replace("</segment>", "</egment>"),
             "c.nml:3: the XML is broken",
         ),
-        (String::new(), "c.nml:1: no <morphology> with a <segment>"),
+        (
+            String::new(),
+            "c.nml:1: no <morphology> or <segments> with a <segment>",
+        ),
     ] {
         let said = fault(&inner);
         assert!(said.starts_with(expected), "{said}");
@@ -319,6 +322,84 @@ fn a_segment_that_begins_on_its_parent_forks_there() {
     assert_eq!(spine.length, 81.0);
 }
 
+/// A soma, a dendrite, and an axon that begins half way along it, as NeuroML 1 has them.
+fn version_1(units: &str) -> String {
+    let end = |name: &str, x: f64, y: f64, d: f64| {
+        format!("<mml:{name} x=\"{x}\" y=\"{y}\" z=\"0\" diameter=\"{d}\"/>")
+    };
+    let segment = |id: i64, more: &str, ends: &[String]| {
+        format!(
+            "<mml:segment id=\"{id}\" name=\"s{id}\" {more}>{}</mml:segment>\n",
+            ends.concat()
+        )
+    };
+    let group = |name: &str| format!("<meta:group>{name}</meta:group>");
+    [
+        format!("<neuroml xmlns=\"http://morphml.org/neuroml/schema\" {units}>\n"),
+        "<cells><cell name=\"c\">\n<mml:segments>\n".to_owned(),
+        segment(
+            0,
+            "cable=\"0\"",
+            &[end("proximal", 0., 0., 10.), end("distal", 10., 0., 10.)],
+        ),
+        segment(
+            1,
+            "parent=\"0\" cable=\"1\"",
+            &[end("proximal", 10., 0., 2.), end("distal", 50., 0., 2.)],
+        ),
+        segment(2, "parent=\"1\" cable=\"1\"", &[end("distal", 90., 0., 2.)]),
+        segment(
+            3,
+            "parent=\"1\" cable=\"2\"",
+            &[end("distal", 30., 30., 2.)],
+        ),
+        "</mml:segments>\n<mml:cables>".to_owned(),
+        format!(
+            "<mml:cable id=\"0\" name=\"a\">{}</mml:cable>",
+            group("soma_group")
+        ),
+        format!(
+            "<mml:cable id=\"1\" name=\"b\">{}{}</mml:cable>",
+            group("all"),
+            group("dendrite_group")
+        ),
+        "<mml:cable id=\"2\" name=\"c\" fract_along_parent=\"0.5\"></mml:cable>\
+         <mml:cablegroup name=\"axon_group\"><mml:cable id=\"2\"/></mml:cablegroup>\
+         </mml:cables>\n</cell></cells></neuroml>\n"
+            .to_owned(),
+    ]
+    .concat()
+}
+
+#[neurotess_testing::test]
+fn neuroml_1_has_cables_with_groups_and_fractions() {
+    for (units, scale) in [
+        ("", 1.0),
+        ("length_units=\"micrometer\"", 1.0),
+        ("length_units=\"micron\"", 1.0),
+        ("lengthUnits=\"mm\"", 1000.0),
+    ] {
+        let file = version_1(units);
+        let read = neuroml::read_bytes(file.as_bytes(), "c.nml", &ReadOptions::default());
+        let m = Measures::of(&read.expect(units).morphology);
+        let by_type = &m.length_by_type;
+        assert_eq!(
+            (by_type.axon, by_type.basal_dendrite),
+            (30.0 * scale, 80.0 * scale)
+        );
+        assert_eq!((m.n_bifurcations, m.n_neurites, m.n_ends), (1, 1, 2));
+        assert!(
+            (m.soma.area / scale / scale - 314.159).abs() < 0.01,
+            "{}",
+            m.soma.area
+        );
+    }
+    let file = version_1("length_units=\"parsec\"");
+    let read = neuroml::read_bytes(file.as_bytes(), "c.nml", &ReadOptions::default());
+    let said = read.expect_err("no unit of cells").to_string();
+    assert!(said.starts_with("c.nml:1: \"parsec\" is no unit"), "{said}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(neurotess_testing::cases(300, 1500)))]
     #[neurotess_testing::test]
@@ -329,6 +410,10 @@ proptest! {
                 Just("</segment>".to_owned()), Just("<notes>x</notes>".to_owned()),
                 Just("<segmentGroup id=\"soma\">".to_owned()), Just("</segmentGroup>".to_owned()),
                 Just("<include segmentGroup=\"soma\"/>".to_owned()), Just("&x; <".to_owned()),
+                Just("<segments>".to_owned()), Just("<cables>".to_owned()),
+                (0..3_i64).prop_map(|i| format!("<cable id=\"{i}\"><group>axon</group></cable>")),
+                (0..6_i64, 0..6_i64).prop_map(|(i, p)| format!(
+                    "<segment id=\"{i}\" parent=\"{p}\" cable=\"0\">")),
                 Just("<path>".to_owned()), Just("</path>".to_owned()),
                 Just("<subTree>".to_owned()), Just("</subTree>".to_owned()),
                 (0..6_i64).prop_map(|i| format!("<from segment=\"{i}\"/>")),

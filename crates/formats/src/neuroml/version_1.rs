@@ -1,0 +1,171 @@
+//! NeuroML 1, whose morphologies are MorphML: `<segment id parent cable>` in `<segments>`, and `<cable>`s, unbranched
+//! runs of segments, that name their groups and how far along its parent a run begins
+//! (<https://neuroml.org/neuroml1>). CATMAID and neuroConstruct write it. Coordinates are in the unit of
+//! `length_units`.
+
+use std::collections::HashMap;
+
+use super::records::{Group, Records, Segment};
+use crate::Fault;
+use crate::text::Located;
+use crate::unit::micrometers;
+use crate::xml::Element;
+
+/// What NeuroML 1 has beside segments.
+#[derive(Default)]
+pub(super) struct Cables {
+    /// Line and text of the unit of lengths.
+    unit: Option<(u64, String)>,
+    /// Of each segment the cable, with the line.
+    of_segments: Vec<(i64, Option<i64>)>,
+    cables: Vec<Cable>,
+    /// Groups of cables.
+    groups: Vec<(String, Vec<i64>)>,
+    /// In the name of a cable's group.
+    in_group: bool,
+}
+
+/// A run of segments.
+struct Cable {
+    id: i64,
+    name: String,
+    /// How far along its parent the first segment begins.
+    along: f64,
+    groups: Vec<String>,
+}
+
+impl Cables {
+    /// Takes the unit from the outermost element.
+    pub(super) fn root(&mut self, element: &Element) {
+        let names = ["length_units", "lengthUnits"];
+        let unit = names.into_iter().find_map(|name| element.attribute(name));
+        self.unit = unit.map(|unit| (element.line, unit));
+    }
+
+    /// Takes the name of a cable's group.
+    pub(super) fn text(&mut self, text: &str) {
+        if let (true, Some(cable)) = (self.in_group, self.cables.last_mut()) {
+            cable.groups.push(text.to_owned());
+        }
+        self.in_group = false;
+    }
+}
+
+impl Records {
+    /// Takes in an element of NeuroML 1.
+    pub(super) fn of_version_1(&mut self, element: &Element, parent: &str) -> Located<()> {
+        match (parent, &*element.name) {
+            ("segments", "segment") => {
+                let whole_if_any = |key: &'static str| match element.attribute(key) {
+                    None => Ok(None),
+                    Some(_) => element.whole(key).map(Some),
+                };
+                let id = element.whole("id")?;
+                self.segments.push(Segment {
+                    id,
+                    name: element.attribute("name").unwrap_or_default(),
+                    line: element.line,
+                    parent: whole_if_any("parent")?.map(|parent| (parent, 1.0)),
+                    ..Segment::default()
+                });
+                let cable = whole_if_any("cable")?;
+                self.cables.of_segments.push((id, cable));
+            }
+            ("cables", "cable") => {
+                let names = ["fract_along_parent", "fractAlongParent"];
+                let along = names.map(|name| element.real_if_any(name));
+                let [older, newer] = along;
+                let along = older?.or(newer?).unwrap_or(1.0);
+                if !(0.0..=1.0).contains(&along) {
+                    return Err(element.fault("fract_along_parent", along.to_string()));
+                }
+                self.cables.cables.push(Cable {
+                    id: element.whole("id")?,
+                    name: element.attribute("name").unwrap_or_default(),
+                    along,
+                    groups: Vec::new(),
+                });
+            }
+            ("cable", "group") => self.cables.in_group = true,
+            ("cables", "cablegroup") => {
+                let name = element.attribute("name").unwrap_or_default();
+                self.cables.groups.push((name, Vec::new()));
+            }
+            ("cablegroup", "cable") => {
+                let id = element.whole("id")?;
+                if let Some((_, cables)) = self.cables.groups.last_mut() {
+                    cables.push(id);
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Makes groups of cables, gives segments the places where their cables begin, and micrometers of coordinates.
+    pub(super) fn finish_version_1(&mut self) -> Located<()> {
+        let Cables {
+            unit,
+            of_segments,
+            cables,
+            groups,
+            ..
+        } = std::mem::take(&mut self.cables);
+        let mut segments: HashMap<i64, Vec<i64>> = HashMap::new();
+        let cable_of: HashMap<i64, i64> = of_segments
+            .into_iter()
+            .filter_map(|(segment, cable)| cable.map(|cable| (segment, cable)))
+            .collect();
+        for segment in &self.segments {
+            if let Some(&cable) = cable_of.get(&segment.id) {
+                segments.entry(cable).or_default().push(segment.id);
+            }
+        }
+        let mut members: Vec<(String, Vec<i64>)> = Vec::new();
+        for cable in &cables {
+            let names = cable.groups.iter().chain([&cable.name]);
+            members.extend(names.map(|name| (name.clone(), vec![cable.id])));
+        }
+        members.extend(groups);
+        // One group of each name, in the order of the file.
+        let mut index: HashMap<String, usize> = HashMap::new();
+        for (name, cables) in members {
+            let i = *index.entry(name.clone()).or_insert_with(|| {
+                self.groups.push(Group {
+                    id: name,
+                    ..Group::default()
+                });
+                self.groups.len() - 1
+            });
+            let ids = cables.iter().filter_map(|cable| segments.get(cable));
+            self.groups[i].members.extend(ids.flatten());
+        }
+        let along: HashMap<i64, f64> = cables.iter().map(|c| (c.id, c.along)).collect();
+        for segment in &mut self.segments {
+            let cable = cable_of.get(&segment.id);
+            let place = cable.and_then(|cable| along.get(cable));
+            if let (Some((parent, along)), Some(&place)) = (&mut segment.parent, place)
+                && cable_of.get(parent) != cable
+            {
+                *along = place;
+            }
+        }
+        match unit {
+            Some((line, unit)) => self.scale(line, unit),
+            None => Ok(()),
+        }
+    }
+
+    fn scale(&mut self, line: u64, unit: String) -> Located<()> {
+        let scale = micrometers(&unit).ok_or((line, Fault::Unit { unit }))?;
+        for segment in &mut self.segments {
+            for end in [&mut segment.proximal, &mut segment.distal] {
+                if let Some(end) = end {
+                    end.position *= scale;
+                    end.radius *= scale;
+                }
+            }
+        }
+        Ok(())
+    }
+}
