@@ -10,6 +10,8 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess", "asc"),
     ("neurotess", "h5"),
     ("neurotess", "neuroml"),
+    ("neurotess", "xml"),
+    ("neurotess", "json"),
     ("neurotess", "circuit"),
     ("neurotess", "synth"),
     ("neurotess", "synth,circuit"),

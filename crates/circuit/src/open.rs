@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use neurotess_formats::regular;
+use neurotess_formats::{is_json_tracing, regular};
 
 use crate::{Circuit, CircuitError, blue_config, nsol, placed, scene, snudda, sonata, table};
 
@@ -44,8 +44,8 @@ impl Circuit {
 }
 
 /// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration
-/// of one; HDF5 is if it is a network of Snudda; any `.json`, `.csv` and `.tsv` file is, since no morphology is: what
-/// is wrong with it, opening tells. So are configurations and cells of before SONATA, which opening refuses with a remedy.
+/// of one; HDF5 is if it is a network of Snudda; any `.csv` and `.tsv` file is, since no morphology is, and any `.json`
+/// file but neurons of MouseLight and skeletons of CATMAID: what is wrong with it, opening tells. So are configurations and cells of before SONATA, which opening refuses with a remedy.
 pub fn is_circuit(path: &Path) -> bool {
     if path.is_dir() {
         return sonata::find(path).is_ok() || snudda::find(path).is_some();
@@ -58,12 +58,18 @@ pub fn is_circuit(path: &Path) -> bool {
         return true;
     }
     if has_extension(path, "xml") {
-        let mut begin = Vec::new();
-        let read = regular(path).and_then(|()| File::open(path));
-        let read = read.and_then(|file| file.take(4096).read_to_end(&mut begin));
-        return read.is_ok() && nsol::looks_like(&begin);
+        return beginning(path, 1 << 12).is_some_and(|begin| nsol::looks_like(&begin));
     }
     has_extension(path, "json")
+        && !beginning(path, 1 << 20).is_some_and(|begin| is_json_tracing(&begin))
+}
+
+/// The first bytes of a file, if it can be read.
+fn beginning(path: &Path, most: u64) -> Option<Vec<u8>> {
+    regular(path).ok()?;
+    let mut begin = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut begin));
+    read.ok().map(|_| begin)
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -55,13 +55,37 @@ pub enum Fault {
     Io(io::Error),
     /// Neither name nor content tell the format.
     #[error(
-        "not a format known by its name or content: give SWC (.swc, .eswc), Neurolucida (.asc), H5 (.h5) or NeuroML (.nml)"
+        "not a format known by its name or content: give SWC (.swc, .eswc), Neurolucida (.asc, .xml), H5 (.h5), \
+         NeuroML (.nml), SNT (.traces), KNOSSOS (.nml), or MouseLight's or CATMAID's JSON (.json)"
     )]
     UnknownFormat,
+    /// A format of tracings that is not read.
+    #[error("the file is {format}, which is not read: {remedy}")]
+    Foreign {
+        /// Its name.
+        format: &'static str,
+        /// The way out.
+        remedy: &'static str,
+    },
+    /// XML of another kind.
+    #[error(
+        "the XML is <{root}>, no tracing: give NeuroML (<neuroml>), SNT's traces (<tracings>), webKnossos' or \
+         KNOSSOS' skeletons (<things>) or Neurolucida XML (<mbf>)"
+    )]
+    OtherXml {
+        /// Name of its outermost element.
+        root: String,
+    },
+    /// JSON of another kind.
+    #[error(
+        "the JSON is no tracing that is known: give a neuron as MouseLight exports it, or a skeleton of CATMAID \
+         (compact-skeleton)"
+    )]
+    OtherJson,
     /// The format is known, but this build was made without it.
     #[error("this build of neurotess has no '{feature}': build it with that feature")]
     NotBuiltIn {
-        /// The feature, which is named as the format is.
+        /// The feature.
         feature: &'static str,
     },
     /// Packed by gzip, and not whole.
@@ -192,6 +216,12 @@ pub enum Fault {
         /// What the library says.
         reason: String,
     },
+    /// JSON itself is broken, or lacks what a tracing has.
+    #[error("the JSON is not what it should be ({reason}): export the file again")]
+    Json {
+        /// What the library says.
+        reason: String,
+    },
     /// An attribute is missing or not what it should be.
     #[error("<{element}> has {attribute}={text:?}, which is missing or out of range: correct it")]
     Attribute {
@@ -211,6 +241,36 @@ pub enum Fault {
     /// XML without a cell.
     #[error("no <morphology> or <segments> with a <segment>: look for the file that has the cell")]
     NoMorphology,
+    /// XML of a tracing without one.
+    #[error("the <{root}> has no <{element}> with points: look for the file that has the tracing")]
+    NoElement {
+        /// Its outermost element.
+        root: &'static str,
+        /// What should be in it.
+        element: &'static str,
+    },
+    /// Two paths have the same number.
+    #[error("path {id} stands in line {first_line} already: number the paths anew")]
+    RepeatedPath {
+        /// The number.
+        id: i64,
+        /// Line of the first.
+        first_line: u64,
+    },
+    /// A path starts on another that is not in the file.
+    #[error("path {id} starts on path {parent}, which is not in the file: add it")]
+    UnknownPath {
+        /// Number of the path.
+        id: i64,
+        /// Number that no path has.
+        parent: i64,
+    },
+    /// An edge between nodes that are not in the file.
+    #[error("an edge names node {id}, which is not in the file: add the node or remove the edge")]
+    UnknownEnd {
+        /// Number that no node has.
+        id: i64,
+    },
     /// Two segments have the same number.
     #[error("segment {id} stands in line {first_line} already: number the segments anew")]
     RepeatedSegment {

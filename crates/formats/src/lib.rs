@@ -19,8 +19,9 @@
 //! ```
 //!
 //! # Features
-//! SWC is always there. `asc`, `h5` and `neuroml` add the other formats, all of them by default. A file of a
-//! format that is not built in is an error that names the feature.
+//! SWC is always there. `asc`, `h5`, `neuroml`, `xml` (SNT, KNOSSOS, Neurolucida XML) and `json` (MouseLight, CATMAID)
+//! add the other formats, all of them by default. A file of a format that is not built in is an error that names the
+//! feature.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "asc")]
@@ -28,12 +29,23 @@ pub mod asc;
 #[cfg(feature = "h5")]
 pub mod capacity;
 mod error;
+mod foreign;
+#[cfg(any(feature = "xml", feature = "json"))]
+mod forest;
 mod format;
 #[cfg(feature = "h5")]
 pub mod h5;
 #[cfg(feature = "h5")]
 mod hdf5;
+#[cfg(feature = "json")]
+pub mod json;
+#[cfg(feature = "xml")]
+pub mod knossos;
 mod losses;
+#[cfg(any(feature = "neuroml", feature = "xml"))]
+mod named;
+#[cfg(feature = "xml")]
+pub mod neurolucida_xml;
 #[cfg(feature = "neuroml")]
 pub mod neuroml;
 mod number;
@@ -42,17 +54,25 @@ mod outlines;
 mod packed;
 mod recognize;
 mod regular;
-#[cfg(any(feature = "asc", feature = "h5", feature = "neuroml"))]
+#[cfg(any(
+    feature = "asc",
+    feature = "h5",
+    feature = "neuroml",
+    feature = "xml",
+    feature = "json"
+))]
 mod sample;
 pub mod swc;
 mod text;
-#[cfg(any(feature = "asc", feature = "h5"))]
+#[cfg(any(feature = "asc", feature = "h5", feature = "xml"))]
 mod traced;
-#[cfg(feature = "neuroml")]
+#[cfg(feature = "xml")]
+pub mod traces;
+#[cfg(any(feature = "neuroml", feature = "xml"))]
 mod unit;
 mod warning;
 mod write;
-#[cfg(feature = "neuroml")]
+#[cfg(any(feature = "neuroml", feature = "xml"))]
 mod xml;
 
 use std::path::Path;
@@ -62,6 +82,7 @@ use neurotess_morphology::Morphology;
 pub use error::{Fault, ReadError};
 pub use format::{EXTENSIONS, Format, has_known_name};
 pub use packed::unpacked_name;
+pub use recognize::is_json_tracing;
 pub use regular::{read_regular, regular};
 use text::Located;
 pub use warning::Warning;
@@ -83,7 +104,7 @@ pub struct ReadOptions {
 pub struct Read {
     /// The cell, named after the file.
     pub morphology: Morphology,
-    /// Short name of the format: `swc`, `asc`, `h5` or `neuroml`.
+    /// Short name of the format: [`Format::name`].
     pub format: &'static str,
     /// What was odd, in the order of the lines.
     pub warnings: Vec<Warning>,
@@ -135,18 +156,33 @@ pub fn read_bytes(
         Ok(bytes) => bytes,
         Err(fault) => return Err(ReadError::of_file(name, fault)),
     };
-    match format.or_else(|| recognize::of_content(&bytes)) {
-        Some(Format::Swc) => swc::read_bytes(&bytes, name, options),
+    let format = recognize::format(&bytes, format);
+    match format.map_err(|fault| ReadError::of_file(name, fault))? {
+        Format::Swc => swc::read_bytes(&bytes, name, options),
         #[cfg(feature = "asc")]
-        Some(Format::Asc) => asc::read_bytes(&bytes, name, options),
-        #[cfg(feature = "neuroml")]
-        Some(Format::NeuroMl) => neuroml::read_bytes(&bytes, name, options),
+        Format::Asc => asc::read_bytes(&bytes, name, options),
         #[cfg(feature = "h5")]
-        Some(Format::H5) => h5::read_bytes(bytes, name, options),
-        #[cfg(not(all(feature = "asc", feature = "h5", feature = "neuroml")))]
-        Some(other) => Err(ReadError::of_file(name, other.missing())),
-        None if bytes.is_empty() => Err(ReadError::of_file(name, Fault::Empty)),
-        None => Err(ReadError::of_file(name, Fault::UnknownFormat)),
+        Format::H5 => h5::read_bytes(bytes, name, options),
+        #[cfg(feature = "neuroml")]
+        Format::NeuroMl => neuroml::read_bytes(&bytes, name, options),
+        #[cfg(feature = "xml")]
+        Format::Traces => traces::read_bytes(&bytes, name, options),
+        #[cfg(feature = "xml")]
+        Format::Knossos => knossos::read_bytes(&bytes, name, options),
+        #[cfg(feature = "xml")]
+        Format::NeurolucidaXml => neurolucida_xml::read_bytes(&bytes, name, options),
+        #[cfg(feature = "json")]
+        Format::MouseLight => json::mouselight::read_bytes(&bytes, name, options),
+        #[cfg(feature = "json")]
+        Format::Catmaid => json::catmaid::read_bytes(&bytes, name, options),
+        #[cfg(not(all(
+            feature = "asc",
+            feature = "h5",
+            feature = "neuroml",
+            feature = "xml",
+            feature = "json"
+        )))]
+        other => Err(ReadError::of_file(name, other.missing())),
     }
 }
 

@@ -36,8 +36,10 @@ pub fn write(
         Format::Asc => asc::write(morphology, writer),
         #[cfg(feature = "h5")]
         Format::H5 => h5::write(morphology, writer),
-        Format::NeuroMl => Err(io::ErrorKind::Unsupported.into()),
         #[cfg(not(all(feature = "asc", feature = "h5")))]
-        other => Err(io::Error::new(io::ErrorKind::Unsupported, other.missing())),
+        other if Format::WRITTEN.contains(&other) => {
+            Err(io::Error::new(io::ErrorKind::Unsupported, other.missing()))
+        }
+        _ => Err(io::ErrorKind::Unsupported.into()),
     }
 }

@@ -151,6 +151,23 @@ impl Element<'_> {
         }
     }
 
+    /// A whole number that may be missing; what is there has to be one.
+    pub(crate) fn whole_if_any(&self, key: &'static str) -> Located<Option<i64>> {
+        match self.attribute(key) {
+            None => Ok(None),
+            Some(_) => self.whole(key).map(Some),
+        }
+    }
+
+    /// A radius or diameter that may be missing; one that is no number, or below zero, is.
+    pub(crate) fn radius_if_any(&self, key: &'static str) -> Located<Option<f64>> {
+        let text = self.attribute(key).unwrap_or_default();
+        if text.trim().eq_ignore_ascii_case("nan") || text.is_empty() {
+            return Ok(None);
+        }
+        self.real(key).map(|size| (size >= 0.0).then_some(size))
+    }
+
     /// Three numbers that have to be there.
     pub(crate) fn reals(&self, keys: [&'static str; 3]) -> Located<DVec3> {
         let [x, y, z] = keys;

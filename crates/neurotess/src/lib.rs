@@ -57,7 +57,7 @@
 //! | module | what | feature |
 //! | --- | --- | --- |
 //! | [`morphology`] | the traced cell, its measures, edits and comparisons | |
-//! | [`formats`] | morphology files, there and back | SWC; `asc`, `h5`, `neuroml` |
+//! | [`formats`] | morphology files, there and back | SWC; `asc`, `h5`, `neuroml`, `xml`, `json` |
 //! | [`circuit`] | many neurons: circuits, scenes, reports | `circuit` |
 //! | [`cache`] | what opening a circuit leaves for the next time | `circuit` |
 //! | [`synth`] | synthetic neurons and circuits | `synth` |

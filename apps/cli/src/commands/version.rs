@@ -31,7 +31,8 @@ pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
             Ok(adapter) => format!("adapter: {adapter}"),
             Err(e) => format!("adapter: none: {e}"),
         });
-        reporter.answer(&format!("reads: {}", MORPHOLOGIES.join(" ")));
+        // Files in XML and JSON are not looked for in folders.
+        reporter.answer(&format!("reads: {} xml json", MORPHOLOGIES.join(" ")));
         reporter.answer(&format!("writes: {}", written().join(" ")));
         reporter.answer(&format!("meshes: {}", meshes.join(" ")));
         let system = (std::env::consts::OS, std::env::consts::ARCH);

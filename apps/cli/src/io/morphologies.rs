@@ -66,7 +66,7 @@ impl From<formats::Warning> for ReaderWarning {
 }
 
 /// Extensions of morphologies that are looked for in folders.
-pub(crate) const MORPHOLOGIES: [&str; 14] = [
+pub(crate) const MORPHOLOGIES: [&str; 16] = [
     "swc",
     "eswc",
     "asc",
@@ -74,6 +74,7 @@ pub(crate) const MORPHOLOGIES: [&str; 14] = [
     "hdf5",
     "nml",
     "neuroml",
+    "traces",
     "swc.gz",
     "eswc.gz",
     "asc.gz",
@@ -81,6 +82,7 @@ pub(crate) const MORPHOLOGIES: [&str; 14] = [
     "hdf5.gz",
     "nml.gz",
     "neuroml.gz",
+    "traces.gz",
 ];
 
 /// Reads the morphology of an input.

@@ -264,7 +264,8 @@ class Morphology:
 
     @property
     def format(self) -> str:
-        """``"swc"``, ``"asc"``, ``"h5"``, ``"neuroml"`` or ``"synth"``."""
+        """``"swc"``, ``"asc"``, ``"h5"``, ``"neuroml"``, ``"traces"``, ``"knossos"``, ``"neurolucida_xml"``, ``"mouselight"``,
+        ``"catmaid"`` or ``"synth"``."""
         return self._cell.format
 
     @property
@@ -493,10 +494,11 @@ def read(
     name: str | None = None,
     strict: bool = False,
 ) -> Morphology:
-    """Reads a morphology: SWC, Neurolucida ASC, Blue Brain's H5, or NeuroML.
+    """Reads a morphology: SWC, Neurolucida ASC or XML, Blue Brain's H5, NeuroML, SNT's traces, skeletons of
+    webKnossos and KNOSSOS, and JSON of MouseLight and CATMAID.
 
     `source` is a path, the bytes of a file, or an open file. ``merged.h5#cells/a`` is one morphology of an H5
-    file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``) is for bytes and open files
+    file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``, ...) is for bytes and open files
     whose content does not tell it, and `name` is what errors call them.
 
     What is odd in the file is warned of (`ReadWarning`), and stays in `Morphology.warnings`. With `strict` it

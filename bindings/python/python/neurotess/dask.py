@@ -108,7 +108,7 @@ def _key(content: bytes, name: str, arguments: list[str]) -> str:
 
 def _format(file: str) -> str | None:
     extension = os.path.splitext(file)[1].lower().lstrip(".")
-    return extension if extension in ("swc", "eswc", "asc", "h5", "nml") else None
+    return extension if extension in ("swc", "eswc", "asc", "h5", "nml", "traces") else None
 
 
 def _recorded(record: str) -> str | None:

@@ -404,7 +404,7 @@ fn format_named(name: &str) -> PyResult<Format> {
     let found = named.or_else(|| Format::of_extension(plain));
     found.ok_or_else(|| {
         PyValueError::new_err(format!(
-            "'{name}' is no format of morphologies: use 'swc', 'asc', 'h5' or 'nml'"
+            "'{name}' is no format of morphologies: use 'swc', 'asc', 'h5', 'nml', 'traces', 'xml' or 'json'"
         ))
     })
 }

@@ -11,17 +11,7 @@ use neurotess_morphology::NeuriteKind;
 
 use super::members::Members;
 use super::records::{Records, Segment};
-
-/// What a name or a term says.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
-    Apical,
-    Basal,
-    Axon,
-    Soma,
-    /// Of whatever sort.
-    Dendrite,
-}
+use crate::named::Part;
 
 /// What a group says of its segments. The least counts.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,7 +41,7 @@ pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<Neurite
     for group in &records.groups {
         let exact = of_exact_name(&group.id);
         let term = of_term(&group.term);
-        let Some(part) = exact.or(term).or_else(|| of_name(&group.id)) else {
+        let Some(part) = exact.or(term).or_else(|| Part::of_name(&group.id)) else {
             continue;
         };
         let segments = members.all(group);
@@ -74,7 +64,7 @@ pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<Neurite
     }
     let kind = |(i, segment): (usize, &Segment)| {
         let by_group = words.get(&i).and_then(Words::part);
-        let part = by_group.or_else(|| of_name(&segment.name));
+        let part = by_group.or_else(|| Part::of_name(&segment.name));
         part.map_or(NeuriteKind::UNDEFINED, Part::kind)
     };
     records.segments.iter().enumerate().map(kind).collect()
@@ -103,17 +93,6 @@ impl Words {
     }
 }
 
-impl Part {
-    fn kind(self) -> NeuriteKind {
-        match self {
-            Self::Apical => NeuriteKind::APICAL_DENDRITE,
-            Self::Basal | Self::Dendrite => NeuriteKind::BASAL_DENDRITE,
-            Self::Axon => NeuriteKind::AXON,
-            Self::Soma => NeuriteKind::SOMA,
-        }
-    }
-}
-
 /// Names that the conventions of NeuroML give.
 fn of_exact_name(name: &str) -> Option<Part> {
     Some(match name {
@@ -132,28 +111,6 @@ fn of_term(term: &str) -> Option<Part> {
         "GO:0030424" | "sao1770195789" => Part::Axon,
         "GO:0043025" | "sao1044911821" => Part::Soma,
         "GO:0030425" | "sao1211023249" => Part::Dendrite,
-        _ => return None,
-    })
-}
-
-/// Names in use: `apical_dends`, `basal0`, `Dend_3`, `axonal`. One of two kinds, as `soma_dends`, or of what is not
-/// there, as `no_axon`, says nothing.
-fn of_name(name: &str) -> Option<Part> {
-    let name = name.to_ascii_lowercase();
-    let mut words = name.split(|c: char| !c.is_ascii_alphabetic());
-    let denies = |word| matches!(word, "no" | "non" | "not" | "but" | "without" | "except");
-    if words.any(denies) || name.contains("perisoma") {
-        return None;
-    }
-    let says = |word: &str| name.contains(word);
-    let (apical, basal) = (says("apic"), says("basal"));
-    let dendrite = apical || basal || says("dend");
-    Some(match (says("soma"), says("axon"), dendrite) {
-        (true, false, false) => Part::Soma,
-        (false, true, false) => Part::Axon,
-        (false, false, true) if apical != basal && apical => Part::Apical,
-        (false, false, true) if apical != basal => Part::Basal,
-        (false, false, true) => Part::Dendrite,
         _ => return None,
     })
 }

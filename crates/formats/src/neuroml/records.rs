@@ -106,7 +106,7 @@ impl Records {
             }
             (parent, name) if self.morphologies == 1 => match parent {
                 "segments" | "cables" | "cable" | "cablegroup" => {
-                    self.of_version_1(element, parent)?
+                    self.of_version_1(element, parent)?;
                 }
                 "morphology" => self.of_morphology(element, name)?,
                 "segment" => self.of_segment(element, name)?,

@@ -56,19 +56,15 @@ impl Records {
     pub(super) fn of_version_1(&mut self, element: &Element, parent: &str) -> Located<()> {
         match (parent, &*element.name) {
             ("segments", "segment") => {
-                let whole_if_any = |key: &'static str| match element.attribute(key) {
-                    None => Ok(None),
-                    Some(_) => element.whole(key).map(Some),
-                };
                 let id = element.whole("id")?;
                 self.segments.push(Segment {
                     id,
                     name: element.attribute("name").unwrap_or_default(),
                     line: element.line,
-                    parent: whole_if_any("parent")?.map(|parent| (parent, 1.0)),
+                    parent: element.whole_if_any("parent")?.map(|parent| (parent, 1.0)),
                     ..Segment::default()
                 });
-                let cable = whole_if_any("cable")?;
+                let cable = element.whole_if_any("cable")?;
                 self.cables.of_segments.push((id, cable));
             }
             ("cables", "cable") => {
@@ -159,11 +155,10 @@ impl Records {
     fn scale(&mut self, line: u64, unit: String) -> Located<()> {
         let scale = micrometers(&unit).ok_or((line, Fault::Unit { unit }))?;
         for segment in &mut self.segments {
-            for end in [&mut segment.proximal, &mut segment.distal] {
-                if let Some(end) = end {
-                    end.position *= scale;
-                    end.radius *= scale;
-                }
+            let ends = [&mut segment.proximal, &mut segment.distal];
+            for end in ends.into_iter().flatten() {
+                end.position *= scale;
+                end.radius *= scale;
             }
         }
         Ok(())

@@ -4,11 +4,18 @@
 mod both_formats;
 mod conventions;
 mod faults;
+mod foreign;
 mod fuzz_swc;
 #[cfg(feature = "asc")]
 mod growth;
 #[cfg(feature = "h5")]
 mod h5_files;
+#[cfg(feature = "json")]
+mod json;
+#[cfg(feature = "xml")]
+mod knossos;
+#[cfg(feature = "xml")]
+mod neurolucida_xml;
 #[cfg(feature = "neuroml")]
 mod neuroml;
 #[cfg(all(feature = "asc", feature = "h5"))]
@@ -18,6 +25,8 @@ mod reference;
 mod round_trip;
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod spines;
+#[cfg(feature = "xml")]
+mod traces;
 mod variants;
 
 neurotess_testing::main!();

@@ -33,7 +33,7 @@ pub(crate) struct InfoArgs {
     /// SONATA configuration or the folder of one, a network of Snudda, a scene)
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// Format of standard input (-), where its content does not tell: swc, asc, h5 or nml
+    /// Format of standard input (-), where its content does not tell: swc, asc, h5, nml, traces, xml or json
     #[arg(long, value_name = "FORMAT", value_parser = morphology_format)]
     pub(crate) format: Option<Format>,
     /// Take every warning of the reader as an error
@@ -148,7 +148,7 @@ fn morphology_format(name: &str) -> Result<Format, String> {
     let named = Format::ALL.into_iter().find(|f| f.name() == name);
     named
         .or_else(|| Format::of_extension(name))
-        .ok_or_else(|| "use swc, asc, h5 or nml".into())
+        .ok_or_else(|| "use swc, asc, h5, nml, traces, xml or json".into())
 }
 
 fn measure(input: &Input, args: &InfoArgs, options: ReadOptions) -> Result<Info, Failure> {

@@ -8,6 +8,7 @@ mod circuit;
 mod convert;
 mod display;
 mod foreign_circuits;
+mod formats;
 mod help;
 mod info;
 mod inputs;
