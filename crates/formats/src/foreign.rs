@@ -1,7 +1,7 @@
 //! Formats of tracings that are not read, so that errors call them by their names.
 
 use crate::Fault;
-use crate::recognize::begin;
+use crate::text::begin;
 
 /// The name of a format and the way out.
 struct Foreign(&'static str, &'static str);

@@ -55,6 +55,7 @@ impl Forest {
         self.nodes[index as usize].parent = Some(parent);
     }
 
+    #[cfg(feature = "json")]
     pub(crate) fn set_radius(&mut self, index: u32, radius: f64) {
         self.nodes[index as usize].radius = radius;
     }

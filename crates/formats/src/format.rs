@@ -94,14 +94,15 @@ impl Format {
 
     /// Whether this build reads it, and writes it if it is written at all.
     pub fn is_built_in(self) -> bool {
-        match self.feature() {
-            "asc" => cfg!(feature = "asc"),
-            "h5" => cfg!(feature = "h5"),
-            "neuroml" => cfg!(feature = "neuroml"),
-            "xml" => cfg!(feature = "xml"),
-            "json" => cfg!(feature = "json"),
-            _ => true,
-        }
+        let features = [
+            ("", true),
+            ("asc", cfg!(feature = "asc")),
+            ("h5", cfg!(feature = "h5")),
+            ("neuroml", cfg!(feature = "neuroml")),
+            ("xml", cfg!(feature = "xml")),
+            ("json", cfg!(feature = "json")),
+        ];
+        features.contains(&(self.feature(), true))
     }
 
     /// The fault of a file of this format where it is not built in.

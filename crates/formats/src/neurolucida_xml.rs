@@ -38,6 +38,8 @@ enum Open {
     Branch { last: Option<u32>, starts: bool },
     /// A spine, which ends at its last point.
     Spine(Option<Sample>),
+    /// The file's description, which is kept.
+    Description,
     /// Whatever else.
     Other,
 }
@@ -64,7 +66,7 @@ impl<'w> Tracer<'w> {
             match part {
                 Part::Begin(element) => tracer.begin(&element)?,
                 Part::End => tracer.end(),
-                Part::Text(_) => {}
+                Part::Text(text) => tracer.text(&text),
             }
         }
         Ok(tracer.tracing)
@@ -79,6 +81,7 @@ impl<'w> Tracer<'w> {
                 Some(&Open::Branch { last, .. }) => Open::Branch { last, starts: true },
                 _ => Open::Other,
             },
+            "description" if within.is_some() => Open::Description,
             "spine" => {
                 let (code, message) = SPINES_LEFT_OUT;
                 self.warnings.add(element.line, code, message);
@@ -130,7 +133,7 @@ impl<'w> Tracer<'w> {
     fn point(&mut self, element: &Element) -> Located<()> {
         let kind = self.kind;
         let within = match self.open.last_mut() {
-            None | Some(Open::Other) => return Ok(()),
+            None | Some(Open::Other | Open::Description) => return Ok(()),
             Some(within) => within,
         };
         let sample = Sample {
@@ -151,9 +154,16 @@ impl<'w> Tracer<'w> {
                     starts,
                 });
             }
-            Open::Other => {}
+            Open::Description | Open::Other => {}
         }
         Ok(())
+    }
+
+    fn text(&mut self, text: &str) {
+        if let Some(Open::Description) = self.open.last() {
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+            self.tracing.header.extend(lines.map(str::to_owned));
+        }
     }
 
     fn end(&mut self) {

@@ -1,7 +1,7 @@
 //! The format of a file by what it begins like.
 
 use crate::format::Format;
-use crate::text::{BOM, refuse_other_text};
+use crate::text::{BOM, begin, refuse_other_text};
 use crate::{Fault, foreign, swc};
 
 /// The format of a file, by its content where several formats share its name. `named`: by its name, if that tells.
@@ -102,11 +102,6 @@ fn json(bytes: &[u8]) -> Option<Format> {
 /// Whether the beginning of a file is that of a tracing in JSON: a neuron of MouseLight, or a skeleton of CATMAID.
 pub fn is_json_tracing(beginning: &[u8]) -> bool {
     json(beginning).is_some()
-}
-
-/// The content without a mark and blanks before it.
-pub(crate) fn begin(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(BOM).unwrap_or(bytes).trim_ascii_start()
 }
 
 /// First bytes of every HDF5 file without a user block.

@@ -11,6 +11,11 @@ pub(crate) type Located<T> = Result<T, (u64, Fault)>;
 /// Byte-order mark of UTF-8.
 pub(crate) const BOM: &[u8] = b"\xef\xbb\xbf";
 
+/// The content without a mark and blanks before it.
+pub(crate) fn begin(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(BOM).unwrap_or(bytes).trim_ascii_start()
+}
+
 /// What is no text in one byte a letter, or a page of the web.
 pub(crate) fn refuse_foreign(bytes: &[u8]) -> Located<()> {
     refuse_other_text(bytes)?;

@@ -160,6 +160,7 @@ impl Element<'_> {
     }
 
     /// A radius or diameter that may be missing; one that is no number, or below zero, is.
+    #[cfg(feature = "xml")]
     pub(crate) fn radius_if_any(&self, key: &'static str) -> Located<Option<f64>> {
         let text = self.attribute(key).unwrap_or_default();
         if text.trim().eq_ignore_ascii_case("nan") || text.is_empty() {

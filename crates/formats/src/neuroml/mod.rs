@@ -12,6 +12,7 @@ mod kinds;
 mod layout;
 mod members;
 mod records;
+mod scan;
 mod version_1;
 
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
@@ -36,7 +37,7 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
 
 fn interpret(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Located<Morphology> {
     let text = xml::text(bytes)?;
-    let records = records::records(&text)?;
+    let records = scan::records(&text)?;
     if records.segments.is_empty() {
         return Err((1, Fault::NoMorphology));
     }

@@ -35,37 +35,34 @@ struct Cable {
 }
 
 impl Cables {
-    /// Takes the unit from the outermost element.
-    pub(super) fn root(&mut self, element: &Element) {
-        let names = ["length_units", "lengthUnits"];
-        let unit = names.into_iter().find_map(|name| element.attribute(name));
-        self.unit = unit.map(|unit| (element.line, unit));
-    }
-
-    /// Takes the name of a cable's group.
-    pub(super) fn text(&mut self, text: &str) {
-        if let (true, Some(cable)) = (self.in_group, self.cables.last_mut()) {
-            cable.groups.push(text.to_owned());
-        }
-        self.in_group = false;
-    }
-}
-
-impl Records {
-    /// Takes in an element of NeuroML 1.
-    pub(super) fn of_version_1(&mut self, element: &Element, parent: &str) -> Located<()> {
+    /// Takes in what is of NeuroML 1: elements of the first cell, segments among them.
+    pub(super) fn element(
+        &mut self,
+        element: &Element,
+        parent: &str,
+        records: &mut Records,
+    ) -> Located<()> {
         match (parent, &*element.name) {
+            (_, "neuroml" | "morphml") => {
+                let names = ["length_units", "lengthUnits"];
+                let unit = names.into_iter().find_map(|name| element.attribute(name));
+                self.unit = unit.map(|unit| (element.line, unit));
+            }
             ("segments", "segment") => {
                 let id = element.whole("id")?;
-                self.segments.push(Segment {
+                let parent = element.whole_if_any("parent")?;
+                records.segments.push(Segment {
                     id,
                     name: element.attribute("name").unwrap_or_default(),
                     line: element.line,
-                    parent: element.whole_if_any("parent")?.map(|parent| (parent, 1.0)),
+                    // Some writers give roots -1.
+                    parent: parent
+                        .filter(|&parent| parent >= 0)
+                        .map(|parent| (parent, 1.0)),
                     ..Segment::default()
                 });
                 let cable = element.whole_if_any("cable")?;
-                self.cables.of_segments.push((id, cable));
+                self.of_segments.push((id, cable));
             }
             ("cables", "cable") => {
                 let names = ["fract_along_parent", "fractAlongParent"];
@@ -75,21 +72,21 @@ impl Records {
                 if !(0.0..=1.0).contains(&along) {
                     return Err(element.fault("fract_along_parent", along.to_string()));
                 }
-                self.cables.cables.push(Cable {
+                self.cables.push(Cable {
                     id: element.whole("id")?,
                     name: element.attribute("name").unwrap_or_default(),
                     along,
                     groups: Vec::new(),
                 });
             }
-            ("cable", "group") => self.cables.in_group = true,
+            ("cable", "group") => self.in_group = true,
             ("cables", "cablegroup") => {
                 let name = element.attribute("name").unwrap_or_default();
-                self.cables.groups.push((name, Vec::new()));
+                self.groups.push((name, Vec::new()));
             }
             ("cablegroup", "cable") => {
                 let id = element.whole("id")?;
-                if let Some((_, cables)) = self.cables.groups.last_mut() {
+                if let Some((_, cables)) = self.groups.last_mut() {
                     cables.push(id);
                 }
             }
@@ -98,46 +95,62 @@ impl Records {
         Ok(())
     }
 
+    /// Takes the name of a cable's group.
+    pub(super) fn text(&mut self, text: &str) {
+        if let (true, Some(cable)) = (self.in_group, self.cables.last_mut()) {
+            cable.groups.push(text.to_owned());
+        }
+        self.in_group = false;
+    }
+
     /// Makes groups of cables, gives segments the places where their cables begin, and micrometers of coordinates.
-    pub(super) fn finish_version_1(&mut self) -> Located<()> {
-        let Cables {
-            unit,
-            of_segments,
-            cables,
-            groups,
-            ..
-        } = std::mem::take(&mut self.cables);
-        let mut segments: HashMap<i64, Vec<i64>> = HashMap::new();
+    pub(super) fn finish(mut self, records: &mut Records) -> Located<()> {
+        let of_segments = std::mem::take(&mut self.of_segments).into_iter();
         let cable_of: HashMap<i64, i64> = of_segments
-            .into_iter()
             .filter_map(|(segment, cable)| cable.map(|cable| (segment, cable)))
             .collect();
-        for segment in &self.segments {
+        self.add_groups(&cable_of, records);
+        self.place(&cable_of, records);
+        match self.unit {
+            Some((line, unit)) => scale(records, line, unit),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes one group of each name, in the order of the file; a cable's own name is that of a group, too.
+    fn add_groups(&mut self, cable_of: &HashMap<i64, i64>, records: &mut Records) {
+        let mut segments: HashMap<i64, Vec<i64>> = HashMap::new();
+        for segment in &records.segments {
             if let Some(&cable) = cable_of.get(&segment.id) {
                 segments.entry(cable).or_default().push(segment.id);
             }
         }
-        let mut members: Vec<(String, Vec<i64>)> = Vec::new();
-        for cable in &cables {
-            let names = cable.groups.iter().chain([&cable.name]);
-            members.extend(names.map(|name| (name.clone(), vec![cable.id])));
-        }
-        members.extend(groups);
-        // One group of each name, in the order of the file.
         let mut index: HashMap<String, usize> = HashMap::new();
-        for (name, cables) in members {
+        let mut add = |name: &String, cables: &[i64]| {
             let i = *index.entry(name.clone()).or_insert_with(|| {
-                self.groups.push(Group {
-                    id: name,
+                records.groups.push(Group {
+                    id: name.clone(),
                     ..Group::default()
                 });
-                self.groups.len() - 1
+                records.groups.len() - 1
             });
             let ids = cables.iter().filter_map(|cable| segments.get(cable));
-            self.groups[i].members.extend(ids.flatten());
+            records.groups[i].members.extend(ids.flatten());
+        };
+        for cable in &self.cables {
+            for name in cable.groups.iter().chain([&cable.name]) {
+                add(name, &[cable.id]);
+            }
         }
-        let along: HashMap<i64, f64> = cables.iter().map(|c| (c.id, c.along)).collect();
-        for segment in &mut self.segments {
+        for (name, cables) in &self.groups {
+            add(name, cables);
+        }
+    }
+
+    /// Gives the first segment of each cable the place where it begins.
+    fn place(&self, cable_of: &HashMap<i64, i64>, records: &mut Records) {
+        let along: HashMap<i64, f64> = self.cables.iter().map(|c| (c.id, c.along)).collect();
+        for segment in &mut records.segments {
             let cable = cable_of.get(&segment.id);
             let place = cable.and_then(|cable| along.get(cable));
             if let (Some((parent, along)), Some(&place)) = (&mut segment.parent, place)
@@ -146,21 +159,17 @@ impl Records {
                 *along = place;
             }
         }
-        match unit {
-            Some((line, unit)) => self.scale(line, unit),
-            None => Ok(()),
-        }
     }
+}
 
-    fn scale(&mut self, line: u64, unit: String) -> Located<()> {
-        let scale = micrometers(&unit).ok_or((line, Fault::Unit { unit }))?;
-        for segment in &mut self.segments {
-            let ends = [&mut segment.proximal, &mut segment.distal];
-            for end in ends.into_iter().flatten() {
-                end.position *= scale;
-                end.radius *= scale;
-            }
+fn scale(records: &mut Records, line: u64, unit: String) -> Located<()> {
+    let scale = micrometers(&unit).ok_or((line, Fault::Unit { unit }))?;
+    for segment in &mut records.segments {
+        let ends = [&mut segment.proximal, &mut segment.distal];
+        for end in ends.into_iter().flatten() {
+            end.position *= scale;
+            end.radius *= scale;
         }
-        Ok(())
     }
+    Ok(())
 }

@@ -71,6 +71,7 @@ fn trees_hang_on_the_soma_and_types_have_kinds() {
             assert_eq!(soma.kind, SomaKind::Contour);
             assert!((soma.radius - (100.0 / std::f32::consts::PI).sqrt()).abs() < 1e-4);
             assert_eq!(read.morphology.points[0].radius, 1.0);
+            assert_eq!(read.morphology.header, ["text <point/>"]);
         }
     }
 }
