@@ -163,18 +163,18 @@ def test_tables_that_are_none_are_told(cell: nt.Morphology) -> None:
 
 
 def test_files_are_written_and_read_back(cell: nt.Morphology, tmp_path: Path) -> None:
-    for extension in ("swc", "asc", "h5"):
+    for extension, name in (("swc", "swc"), ("asc", "asc"), ("h5", "h5"), ("nml", "neuroml")):
         path = tmp_path / f"out.{extension}"
         lost = cell.save(path)
         assert all(isinstance(text, str) for text in lost)
         again = nt.read(path)
-        assert np.allclose(again.points, cell.points) and again.format == extension
+        assert np.allclose(again.points, cell.points) and again.format == name
     with pytest.raises(FileExistsError):
         cell.save(tmp_path / "out.swc", overwrite=False)
     with pytest.raises(ValueError, match="no format"):
         cell.save(tmp_path / "out.xyz")
     with pytest.raises(ValueError, match="read, not written"):
-        cell.save(tmp_path / "out.nml")
+        cell.save(tmp_path / "out.traces")
 
 
 def test_cells_are_pickled(samples: Path) -> None:

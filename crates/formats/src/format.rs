@@ -14,7 +14,7 @@ pub enum Format {
     Asc,
     /// Blue Brain's HDF5, `.h5`.
     H5,
-    /// NeuroML 2 and 1, `.nml`; read only.
+    /// NeuroML 2 and 1, `.nml`; written as 2.
     NeuroMl,
     /// SNT of Fiji, `.traces`; read only.
     Traces,
@@ -49,7 +49,7 @@ impl Format {
     ];
 
     /// Those that can be written.
-    pub const WRITTEN: [Self; 3] = [Self::Swc, Self::Asc, Self::H5];
+    pub const WRITTEN: [Self; 4] = [Self::Swc, Self::Asc, Self::H5, Self::NeuroMl];
 
     /// Short name, as reports have it.
     pub fn name(self) -> &'static str {

@@ -10,6 +10,8 @@ use crate::format::Format;
 #[cfg(feature = "h5")]
 use crate::h5;
 use crate::losses::Losses;
+#[cfg(feature = "neuroml")]
+use crate::neuroml;
 use crate::swc;
 use crate::warning::Warning;
 
@@ -36,7 +38,9 @@ pub fn write(
         Format::Asc => asc::write(morphology, writer),
         #[cfg(feature = "h5")]
         Format::H5 => h5::write(morphology, writer),
-        #[cfg(not(all(feature = "asc", feature = "h5")))]
+        #[cfg(feature = "neuroml")]
+        Format::NeuroMl => neuroml::write(morphology, writer),
+        #[cfg(not(all(feature = "asc", feature = "h5", feature = "neuroml")))]
         other if Format::WRITTEN.contains(&other) => {
             Err(io::Error::new(io::ErrorKind::Unsupported, other.missing()))
         }

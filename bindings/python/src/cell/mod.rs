@@ -382,7 +382,7 @@ pub(crate) fn existing(overwrite: bool) -> Existing {
 fn unwritten(format: Format, error: std::io::Error) -> PyErr {
     match error.kind() {
         std::io::ErrorKind::Unsupported => PyValueError::new_err(format!(
-            "{} is read, not written: use swc, asc or h5",
+            "{} is read, not written: use swc, asc, h5 or nml",
             format.name()
         )),
         _ => error.into(),

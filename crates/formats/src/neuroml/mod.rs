@@ -14,6 +14,7 @@ mod members;
 mod records;
 mod scan;
 mod version_1;
+mod write;
 
 use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
 
@@ -24,6 +25,7 @@ use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text, xml};
 use joints::Joint;
 use layout::Layout;
 use records::Records;
+pub use write::write;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///
@@ -95,7 +97,8 @@ fn nodes(records: &Records, layout: &Layout) -> (Vec<Node>, Vec<u64>) {
         let start = made.sample(own);
         let mut here = own;
         let mut places = vec![(0.0, own)];
-        let sphere = parent.is_none() && same(&start, &distal);
+        // A point of its own that the segment also ends at.
+        let sphere = hung.is_none_or(|(on, _)| on != own) && same(&start, &distal);
         let between = if sphere { &[][..] } else { &layout.inner[i] };
         for &along in between {
             here = made.push(joints::along(&start, &distal, along), kind, Some(here));

@@ -18,6 +18,8 @@ mod knossos;
 mod neurolucida_xml;
 #[cfg(feature = "neuroml")]
 mod neuroml;
+#[cfg(feature = "neuroml")]
+mod neuroml_written;
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod outlined_round_trip;
 #[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]

@@ -46,7 +46,7 @@ pub(crate) struct ConvertArgs {
     /// Replace files that exist
     #[arg(long)]
     pub(crate) force: bool,
-    /// Format to write, where OUT's extension does not tell: swc, asc or h5
+    /// Format to write, where OUT's extension does not tell: swc, asc, h5 or nml
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<String>,
     /// Take every warning of the reader as an error

@@ -36,6 +36,7 @@ fn formats_turn_into_one_another_and_losses_are_reported() {
         ("a.asc", "b.h5"),
         ("b.h5", "c.asc"),
         ("c.asc", "d.swc"),
+        ("cell.swc", "g.cell.nml"),
     ] {
         work.run(&format!("convert {from} -o {to}")).exits(0);
     }
@@ -52,6 +53,7 @@ fn formats_turn_into_one_another_and_losses_are_reported() {
         .map(|key| info[0][key].clone())
     };
     assert_eq!(measures("cell.swc"), measures("d.swc"));
+    assert_eq!(measures("cell.swc"), measures("g.cell.nml"));
     let json = work.run("convert cell.swc -o e.asc --json").exits(0).json();
     let lost = json[0]["lost"].as_array().expect("a list");
     assert!(lost.iter().any(|w| w["code"] == "soma_as_outline"));
@@ -66,10 +68,10 @@ fn formats_turn_into_one_another_and_losses_are_reported() {
 fn other_formats_are_refused_with_what_can_be_written() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
-    for name in ["cell.nml", "cell.obj", "cell"] {
+    for name in ["cell.traces", "cell.obj", "cell"] {
         let run = work.run(&format!("convert cell.swc -o {name}")).exits(2);
         assert!(
-            run.stderr().contains("use swc, asc, h5"),
+            run.stderr().contains("use swc, asc, h5, nml"),
             "{}",
             run.stderr()
         );

@@ -54,7 +54,7 @@ fn wrong_usage_exits_with_2() {
         "synth star -o cell.ply",
         "synth star -o cell.swc --count 2",
         "synth star -o cell.swc --points 5",
-        "convert cell.swc -o cell.nml",
+        "convert cell.swc -o cell.traces",
         "convert cell.swc -o cell",
     ] {
         let run = work.run(wrong).exits(2);
