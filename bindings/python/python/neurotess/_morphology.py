@@ -264,8 +264,8 @@ class Morphology:
 
     @property
     def format(self) -> str:
-        """``"swc"``, ``"asc"``, ``"h5"``, ``"neuroml"``, ``"traces"``, ``"knossos"``, ``"neurolucida_xml"``, ``"mouselight"``,
-        ``"catmaid"`` or ``"synth"``."""
+        """``"swc"``, ``"asc"``, ``"h5"``, ``"neuroml"``, ``"traces"``, ``"knossos"``, ``"neurolucida_xml"``,
+        ``"mouselight"``, ``"catmaid"`` or ``"synth"``."""
         return self._cell.format
 
     @property

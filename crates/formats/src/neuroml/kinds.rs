@@ -5,8 +5,6 @@
 //! others the one with the fewest segments says most. A group named for two kinds (`soma_dends`) says nothing. Which
 //! dendrite a segment is of may be told by other groups than that it is one.
 
-use std::collections::HashMap;
-
 use neurotess_morphology::NeuriteKind;
 
 use super::members::Members;
@@ -36,19 +34,19 @@ struct Words {
 
 /// Kind of each segment, in order. `parents`: index of each one's parent.
 pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<NeuriteKind> {
-    let members = Members::of(records, parents);
-    let mut words: HashMap<usize, Words> = HashMap::new();
-    for group in &records.groups {
+    let mut members = Members::of(records, parents);
+    let mut words = vec![Words::default(); records.segments.len()];
+    for (i, group) in records.groups.iter().enumerate() {
         let exact = of_exact_name(&group.id);
         let term = of_term(&group.term);
         let Some(part) = exact.or(term).or_else(|| Part::of_name(&group.id)) else {
             continue;
         };
-        let segments = members.all(group);
+        let segments = members.all(i);
         let size = segments.len();
         let word = Word { size, part };
         for segment in segments {
-            let known = words.entry(segment).or_default();
+            let known = &mut words[segment];
             put(
                 match (exact, term) {
                     (Some(_), _) => &mut known.exact,
@@ -63,7 +61,7 @@ pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<Neurite
         }
     }
     let kind = |(i, segment): (usize, &Segment)| {
-        let by_group = words.get(&i).and_then(Words::part);
+        let by_group = words[i].part();
         let part = by_group.or_else(|| Part::of_name(&segment.name));
         part.map_or(NeuriteKind::UNDEFINED, Part::kind)
     };
