@@ -59,6 +59,23 @@ def test_morphio(cell: nt.Morphology) -> None:
 
 
 @pytest.mark.full
+def test_libneuroml_reads_what_is_written(cell: nt.Morphology, tmp_path: Path) -> None:
+    pytest.importorskip("neuroml")
+    from neuroml.loaders import NeuroMLLoader
+    from neuroml.utils import validate_neuroml2
+
+    path = str(tmp_path / "cell.nml")
+    cell.save(path)
+    # It raises where the schema is not kept to.
+    validate_neuroml2(path)
+    theirs = NeuroMLLoader.load(path).cells[0]
+    soma = set(theirs.get_all_segments_in_group("soma_group"))
+    others = [s.id for s in theirs.morphology.segments if s.id not in soma]
+    length = sum(theirs.get_segment_length(segment) for segment in others)
+    assert length == pytest.approx(cell.measures()["length"], rel=1e-5)
+
+
+@pytest.mark.full
 def test_neurom(cell: nt.Morphology) -> None:
     neurom = pytest.importorskip("neurom")
     theirs = cell.to_neurom()

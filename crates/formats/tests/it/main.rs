@@ -14,6 +14,8 @@ mod h5_files;
 mod json;
 #[cfg(feature = "xml")]
 mod knossos;
+#[cfg(all(feature = "neuroml", feature = "xml", feature = "json"))]
+mod mutated;
 #[cfg(feature = "xml")]
 mod neurolucida_xml;
 #[cfg(feature = "neuroml")]
