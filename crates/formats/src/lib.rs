@@ -110,8 +110,8 @@ pub struct Read {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads a morphology; the format is told by the name's extension, else by the content. Of an H5 file
-/// that holds many, `FILE#PATH` is one. Files packed by gzip, as `cell.swc.gz`, are unpacked.
+/// Reads a morphology; the format is told by the name's extension, else by the content. Of a file that
+/// holds many, `FILE#NAME` is one: the path in an H5 file, the number or name of a neuron in JSON. Files packed by gzip, as `cell.swc.gz`, are unpacked.
 ///
 /// # Errors
 /// [`ReadError`] with file and line.
@@ -129,15 +129,29 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
     };
     let extension = unpacked_name(file).extension().unwrap_or_default();
     let extension = extension.to_string_lossy();
-    match (Format::of_extension(&extension), member) {
+    match member {
+        Some(member) => read_member(bytes, &name, member, options),
+        None => read_bytes(bytes, &name, Format::of_extension(&extension), options),
+    }
+}
+
+/// Reads one morphology of a file that holds many.
+fn read_member(
+    bytes: Vec<u8>,
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
+    let bytes = packed::unpacked(bytes).map_err(|fault| ReadError::of_file(name, fault))?;
+    match recognize::format(&bytes, None).unwrap_or(Format::H5) {
+        #[cfg(feature = "json")]
+        Format::MouseLight => json::mouselight::read_member(&bytes, name, member, options),
+        #[cfg(feature = "json")]
+        Format::Catmaid => json::catmaid::read_member(&bytes, name, member, options),
         #[cfg(feature = "h5")]
-        (_, Some(member)) => match packed::unpacked(bytes) {
-            Ok(bytes) => h5::read_member(bytes, &name, member, options),
-            Err(fault) => Err(ReadError::of_file(&name, fault)),
-        },
+        _ => h5::read_member(bytes, name, member, options),
         #[cfg(not(feature = "h5"))]
-        (_, Some(_)) => Err(ReadError::of_file(&name, Format::H5.missing())),
-        (format, None) => read_bytes(bytes, &name, format, options),
+        _ => Err(ReadError::of_file(name, Format::H5.missing())),
     }
 }
 

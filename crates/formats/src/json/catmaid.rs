@@ -1,7 +1,7 @@
 //! Skeletons of CATMAID, as `compact-skeleton`, `compact-arbor` and `compact-detail` give them:
 //! `[[[id, parent, user, x, y, z, radius, confidence, …] …], connectors, {tag: [ids]}, …]`, in **nanometers**
 //! (<https://catmaid.readthedocs.io>, the API). Several skeletons stand by their numbers in `{"skeletons": {…}}`, of which
-//! the first is read, with a warning.
+//! the first is read, with a warning, or the one that is named.
 //!
 //! A radius of −1 is none. A node that is tagged `soma`, and has a radius, is the soma. Types are not told.
 
@@ -28,9 +28,23 @@ const NANOMETER: f64 = 1e-3;
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
+    read_member(bytes, name, "", options)
+}
+
+/// Reads one skeleton of a file. `member`: its number; empty: the first.
+///
+/// # Errors
+/// [`ReadError`] with `name` and line.
+pub fn read_member(
+    bytes: &[u8],
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
     read_text(Format::Catmaid, name, options, |name, warnings| {
         let mut source = Source::new(bytes)?;
-        let parts = skeleton(&mut source, warnings)?;
+        let parts = skeleton(&mut source, member, warnings)?;
+        let name = if member.is_empty() { name } else { member };
         forest(&mut source, &parts)?.build(name, warnings)
     })
 }
@@ -42,22 +56,28 @@ struct File<'a> {
 }
 
 /// Nodes, connectors, tags and whatever else is told of a skeleton.
-fn skeleton<'a>(source: &mut Source<'a>, warnings: &mut Warnings) -> Located<Vec<&'a RawValue>> {
+fn skeleton<'a>(
+    source: &mut Source<'a>,
+    member: &str,
+    warnings: &mut Warnings,
+) -> Located<Vec<&'a RawValue>> {
     if source.text.trim_start().starts_with('[') {
         return source.whole();
     }
     let file: File = source.whole()?;
+    if !member.is_empty() {
+        let known = file.skeletons.keys().next().cloned();
+        let missing = (1, super::no_member(member, file.skeletons.len(), known));
+        let skeleton = *file.skeletons.get(member).ok_or(missing)?;
+        return source.value(skeleton);
+    }
     let mut skeletons = file.skeletons.into_values();
     let Some(first) = skeletons.next() else {
         return Err((1, Fault::NoSample));
     };
     if let Some(second) = skeletons.next() {
-        warnings.add_many(
-            source.line(second),
-            "other_cells_left_out",
-            "another cell in the file: only the first is read",
-            1 + skeletons.count() as u64,
-        );
+        let line = source.line(second);
+        super::warn_of_others(line, 1 + skeletons.count(), warnings);
     }
     source.value(first)
 }

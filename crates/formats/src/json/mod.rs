@@ -11,6 +11,7 @@ use serde_json::value::RawValue;
 
 use crate::Fault;
 use crate::text::{BOM, Located, refuse_other_text};
+use crate::warning::Warnings;
 
 /// A file's text, and how far its lines are counted.
 struct Source<'a> {
@@ -65,6 +66,25 @@ fn fault(start: u64, error: &serde_json::Error) -> (u64, Fault) {
     // The library's own line counts from where the part begins.
     let reason = said.split(" at line ").next().unwrap_or(&said).to_owned();
     (line, Fault::Json { reason })
+}
+
+/// Tells of cells that are not read.
+fn warn_of_others(line: u64, count: usize, warnings: &mut Warnings) {
+    warnings.add_many(
+        line,
+        "other_cells_left_out",
+        "another cell in the file: only the first is read; FILE#NAME is one of them",
+        count as u64,
+    );
+}
+
+/// The fault of a name that no cell of the file has. `known`: that of another.
+fn no_member(member: &str, count: usize, known: Option<String>) -> Fault {
+    Fault::NoMember {
+        member: member.to_owned(),
+        count,
+        first: known.unwrap_or_default(),
+    }
 }
 
 /// A coordinate or radius that a model can hold.

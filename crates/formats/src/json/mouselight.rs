@@ -2,7 +2,8 @@
 //! [sample …]}]}`, in µm.
 //!
 //! Axon and dendrite are numbered each for itself, and both begin with a copy of the soma. Samples have the types of
-//! SWC, of which 5 and 6, forks and ends, are those of their tree. Of several neurons the first is read, with a warning.
+//! SWC, of which 5 and 6, forks and ends, are those of their tree. Of several neurons the first is read, with a warning,
+//! or the one that is named.
 
 use std::collections::HashMap;
 
@@ -23,9 +24,23 @@ use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 /// # Errors
 /// [`ReadError`] with `name` and line.
 pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Read, ReadError> {
+    read_member(bytes, name, "", options)
+}
+
+/// Reads one neuron of a file. `member`: its `idString`; empty: the first.
+///
+/// # Errors
+/// [`ReadError`] with `name` and line.
+pub fn read_member(
+    bytes: &[u8],
+    name: &str,
+    member: &str,
+    options: &ReadOptions,
+) -> Result<Read, ReadError> {
     read_text(Format::MouseLight, name, options, |name, warnings| {
         let mut source = Source::new(bytes)?;
-        let neuron = neuron(&mut source, warnings)?;
+        let neuron = neuron(&mut source, member, warnings)?;
+        let name = if member.is_empty() { name } else { member };
         forest(&mut source, &neuron)?.build(name, warnings)
     })
 }
@@ -79,7 +94,11 @@ struct Traced {
     parent: Option<i64>,
 }
 
-fn neuron<'a>(source: &mut Source<'a>, warnings: &mut Warnings) -> Located<Neuron<'a>> {
+fn neuron<'a>(
+    source: &mut Source<'a>,
+    member: &str,
+    warnings: &mut Warnings,
+) -> Located<Neuron<'a>> {
     let is_list = source.text.trim_start().starts_with('[');
     let neurons: Vec<&RawValue> = match is_list {
         true => source.whole()?,
@@ -95,15 +114,22 @@ fn neuron<'a>(source: &mut Source<'a>, warnings: &mut Warnings) -> Located<Neuro
     let Some((&first, others)) = neurons.split_first() else {
         return Err((1, Fault::NoSample));
     };
-    if let Some(second) = others.first() {
-        warnings.add_many(
-            source.line(second),
-            "other_cells_left_out",
-            "another cell in the file: only the first is read",
-            others.len() as u64,
-        );
+    if member.is_empty() {
+        if let Some(second) = others.first() {
+            let line = source.line(second);
+            super::warn_of_others(line, others.len(), warnings);
+        }
+        return source.value(first);
     }
-    source.value(first)
+    let mut known = None;
+    for neuron in &neurons {
+        let neuron: Neuron = source.value(neuron)?;
+        if neuron.id.as_deref() == Some(member) {
+            return Ok(neuron);
+        }
+        known = known.or(neuron.id);
+    }
+    Err((1, super::no_member(member, neurons.len(), known)))
 }
 
 fn forest<'a>(source: &mut Source<'a>, neuron: &Neuron<'a>) -> Located<Forest> {

@@ -102,14 +102,18 @@ fn path(element: &Element, spacing: &Spacing, warnings: &mut Warnings) -> Locate
         element,
         spacing,
         "startson",
-        ["startsx", "startsy", "startsz"],
+        // Older versions left out an s.
+        [
+            ["startsx", "startsy", "startsz"],
+            ["startx", "starty", "startz"],
+        ],
         "startsindex",
     )?;
     let ends = start(
         element,
         spacing,
         "endson",
-        ["endsx", "endsy", "endsz"],
+        [["endsx", "endsy", "endsz"], ["endx", "endy", "endz"]],
         "endsindex",
     )?;
     if starts.is_some() && ends.is_some() {
@@ -141,17 +145,19 @@ fn start(
     element: &Element,
     spacing: &Spacing,
     on: &'static str,
-    place: [&'static str; 3],
+    places: [[&'static str; 3]; 2],
     index: &'static str,
 ) -> Located<Option<Start>> {
     let Some(on) = element.whole_if_any(on)? else {
         return Ok(None);
     };
-    let at = if element.attribute(place[0]).is_some() {
-        Some(Place::Beside(element.reals(place)? * spacing.unit))
-    } else {
-        let index = element.whole_if_any(index)?;
-        index.map(|i| Place::Index(usize::try_from(i).unwrap_or(0)))
+    let named = |place: &[&str; 3]| element.attribute(place[0]).is_some();
+    let at = match places.into_iter().find(named) {
+        Some(place) => Some(Place::Beside(element.reals(place)? * spacing.unit)),
+        None => {
+            let index = element.whole_if_any(index)?;
+            index.map(|i| Place::Index(usize::try_from(i).unwrap_or(0)))
+        }
     };
     Ok(Some(Start { on, at }))
 }

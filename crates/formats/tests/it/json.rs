@@ -84,6 +84,52 @@ fn of_several_cells_the_first_is_read() {
     assert_eq!(missing.warnings[0].code, "soma_zero_radius");
 }
 
+#[neurotess_testing::test]
+fn one_of_several_cells_is_named_after_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let neurons = folder.path().join("neurons.json");
+    let two = format!(
+        "{{\"neurons\": [{},\n{}]}}",
+        neuron("A", "1"),
+        neuron("B", "2")
+    );
+    std::fs::write(&neurons, two).expect("written");
+    let skeletons = folder.path().join("skeletons.json");
+    let two = format!(
+        "{{\"skeletons\": {{\"7\": {}, \"8\": {}}}}}",
+        skeleton(1000.0),
+        skeleton(2000.0)
+    );
+    std::fs::write(&skeletons, two).expect("written");
+    let named = |path: &std::path::Path, member: &str| {
+        let path = format!("{}#{member}", path.display());
+        neurotess_formats::read(path, &ReadOptions::default())
+    };
+    for (path, member, radius) in [
+        (&neurons, "B", 2.0),
+        (&neurons, "A", 1.0),
+        (&skeletons, "8", 2.0),
+    ] {
+        let read = named(path, member).expect(member);
+        assert_eq!(
+            (&*read.morphology.name, read.morphology.somata[0].radius),
+            (member, radius)
+        );
+        assert!(
+            read.warnings
+                .iter()
+                .all(|w| w.code != "other_cells_left_out")
+        );
+    }
+    for (path, first) in [(&neurons, "A"), (&skeletons, "7")] {
+        let said = named(path, "C").expect_err("it is not there").to_string();
+        let expected = format!(
+            "no morphology 'C' is in the file, which has 2: name another one, as in FILE#{first}"
+        );
+        assert!(said.ends_with(&expected), "{said}");
+    }
+}
+
 /// A root tagged as the soma and two branches, in nanometers.
 fn skeleton(radius: f64) -> String {
     format!(

@@ -136,6 +136,19 @@ fn several_trees_are_one_cell_and_a_path_may_end_on_its_parent() {
     let read = read(&file(MICRONS, &(tree(0, 0.0) + &tree(1, 50.0))));
     assert_eq!(Measures::of(&read.morphology).n_neurites, 2);
     assert!(read.warnings.iter().any(|w| w.code == "disconnected"));
+    for place in [
+        "startsx=\"10\" startsy=\"0\" startsz=\"0\"",
+        "startx=\"10\" starty=\"0\" startz=\"0\"",
+        "startsindex=\"1\"",
+    ] {
+        let starts = path(
+            &format!("id=\"5\" startson=\"0\" {place}"),
+            &[[10., 0., 0.], [10., 20., 0.]],
+            "r=\"1\"",
+        );
+        let m = Measures::of(&morphology(&(tree(0, 0.0) + &starts)));
+        assert_eq!((m.n_neurites, m.length), (1, 30.0), "{place}");
+    }
     let ends = path(
         "id=\"5\" endson=\"0\" endsx=\"10\" endsy=\"0\" endsz=\"0\"",
         &[[10., 20., 0.], [10., 0., 0.]],
