@@ -30,6 +30,8 @@ struct Words {
     name: Option<Word>,
     /// Of whatever groups say which dendrite it is.
     dendrite: Option<Word>,
+    /// Of groups of every segment, which tell none of them: less than names of segments.
+    all: Option<Word>,
 }
 
 /// Kind of each segment, in order. `parents`: index of each one's parent.
@@ -50,6 +52,7 @@ pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<Neurite
             put(
                 match (exact, term) {
                     (Some(_), _) => &mut known.exact,
+                    _ if size > 1 && size == records.segments.len() => &mut known.all,
                     (None, Some(_)) => &mut known.term,
                     (None, None) => &mut known.name,
                 },
@@ -62,7 +65,8 @@ pub(super) fn kinds(records: &Records, parents: &[Option<usize>]) -> Vec<Neurite
     }
     let kind = |(i, segment): (usize, &Segment)| {
         let by_group = words[i].part();
-        let part = by_group.or_else(|| Part::of_name(&segment.name));
+        let named = by_group.or_else(|| Part::of_name(&segment.name));
+        let part = named.or(words[i].all.map(|word| word.part));
         part.map_or(NeuriteKind::UNDEFINED, Part::kind)
     };
     records.segments.iter().enumerate().map(kind).collect()

@@ -20,8 +20,6 @@ mod mutated;
 mod neurolucida_xml;
 #[cfg(feature = "neuroml")]
 mod neuroml;
-#[cfg(feature = "neuroml")]
-mod neuroml_written;
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod outlined_round_trip;
 #[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
