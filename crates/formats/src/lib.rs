@@ -68,7 +68,6 @@ mod text;
 mod traced;
 #[cfg(feature = "xml")]
 pub mod traces;
-#[cfg(any(feature = "neuroml", feature = "xml"))]
 mod unit;
 mod warning;
 mod write;
@@ -111,7 +110,8 @@ pub struct Read {
 }
 
 /// Reads a morphology; the format is told by the name's extension, else by the content. Of a file that
-/// holds many, `FILE#NAME` is one: the path in an H5 file, the number or name of a neuron in JSON. Files packed by gzip, as `cell.swc.gz`, are unpacked.
+/// holds many, `FILE#NAME` is one: the path in an H5 file, the number or name of a neuron in JSON. Files packed by
+/// gzip, as `cell.swc.gz`, are unpacked.
 ///
 /// # Errors
 /// [`ReadError`] with file and line.
@@ -119,16 +119,19 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
     let path = path.as_ref();
     let name = path.display().to_string();
     let (file, member) = member(path);
+    let extension = unpacked_name(file).extension().unwrap_or_default();
+    let extension = extension.to_string_lossy();
+    // Of a container of thousands only the one is read; other files of many are read whole.
     #[cfg(feature = "h5")]
-    if let Some(member) = member.filter(|_| !packed::is_packed(file)) {
+    let is_container = !packed::is_packed(file) && !extension.eq_ignore_ascii_case("json");
+    #[cfg(feature = "h5")]
+    if let Some(member) = member.filter(|_| is_container) {
         return h5::read_member_of(file, &name, member, options);
     }
     let bytes = match read_regular(file) {
         Ok(bytes) => bytes,
         Err(e) => return Err(ReadError::of_file(&name, Fault::Io(e))),
     };
-    let extension = unpacked_name(file).extension().unwrap_or_default();
-    let extension = extension.to_string_lossy();
     match member {
         Some(member) => read_member(bytes, &name, member, options),
         None => read_bytes(bytes, &name, Format::of_extension(&extension), options),
@@ -136,6 +139,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadE
 }
 
 /// Reads one morphology of a file that holds many.
+#[cfg_attr(
+    not(any(feature = "h5", feature = "json")),
+    expect(unused_variables, reason = "no format of this build holds many")
+)]
 fn read_member(
     bytes: Vec<u8>,
     name: &str,

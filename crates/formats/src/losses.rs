@@ -1,10 +1,13 @@
 //! What a format cannot say of a morphology.
 
-use neurotess_morphology::Morphology;
 #[cfg(any(feature = "asc", feature = "h5"))]
 use neurotess_morphology::{Attachment, Soma, SomaKind};
+use neurotess_morphology::{Measures, Morphology};
 
 use crate::Warning;
+
+/// By what share a length or a radius may change unsaid: outlines of spheres have corners, and numbers are rounded.
+const MOST_CHANGED: f64 = 1e-3;
 
 /// Losses in writing, one per kind.
 #[derive(Default)]
@@ -55,6 +58,44 @@ impl Losses {
     pub(crate) fn header(&mut self, morphology: &Morphology) {
         let lines = morphology.header.len() as u64;
         self.add("header_lost", "a header's line is not kept", lines);
+    }
+
+    /// What the measures of a copy have otherwise than those of what was written.
+    pub(crate) fn between(&mut self, before: &Measures, after: &Measures) {
+        let forks = |measures: &Measures| measures.n_bifurcations + measures.n_multifurcations;
+        for (code, what, [before, after]) in [
+            (
+                "points_changed",
+                "points of neurites",
+                [before.n_points, after.n_points],
+            ),
+            ("forks_changed", "forks", [forks(before), forks(after)]),
+        ] {
+            if before != after {
+                self.add(
+                    code,
+                    &format!("the copy has {after} {what} instead of {before}"),
+                    1,
+                );
+            }
+        }
+        for (code, what, [before, after]) in [
+            (
+                "length_changed",
+                "the neurites' length",
+                [before.length, after.length],
+            ),
+            (
+                "soma_changed",
+                "the soma's radius",
+                [before.soma.radius, after.soma.radius],
+            ),
+        ] {
+            if (before - after).abs() > MOST_CHANGED * before.abs().max(after.abs()) {
+                let message = format!("{what} is {after:.4} µm in the copy instead of {before:.4}");
+                self.add(code, &message, 1);
+            }
+        }
     }
 
     /// Of spines that are not in the tree.

@@ -144,7 +144,8 @@ pub fn generate_stoppable(
     let stop = Stop(stopped);
     let mut warnings = Warnings::default();
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
-    prepare::mend_radii(&mut skeleton, &mut warnings);
+    prepare::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
+    prepare::thicken(&mut skeleton, options.least_radius, &mut warnings);
     error::check_coordinates(morphology, &skeleton, &mut warnings)?;
     prepare::merge_coincident(&mut skeleton, &mut warnings);
     let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);

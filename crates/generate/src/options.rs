@@ -94,6 +94,11 @@ pub struct GenerateOptions {
     pub crossings: Crossings,
     /// How much the noise of the tracing is smoothed away.
     pub smooth: Smooth,
+    /// Radius (µm) of points without one (zero, negative or no number). `None`: that of their neighbors along the
+    /// path, the median of the cell where there are none, or half a micrometer where no point has a radius.
+    pub unknown_radius: Option<f64>,
+    /// Least radius (µm) of neurites: thinner points become as thick.
+    pub least_radius: f64,
 }
 
 impl GenerateOptions {
@@ -118,6 +123,8 @@ impl Default for GenerateOptions {
             kinds: None,
             crossings: Crossings::Keep,
             smooth: Smooth::None,
+            unknown_radius: None,
+            least_radius: 0.0,
         }
     }
 }

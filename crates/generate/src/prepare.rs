@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
-/// Radius (µm) of last resort.
+/// Radius (µm) of last resort, as of a thin dendrite: where no point of a cell has one.
 const FALLBACK_RADIUS: f64 = 0.5;
 /// Points nearer to their parent than this share of the larger radius are one point.
 const COINCIDENT: f64 = 1e-3;
@@ -22,12 +22,24 @@ pub(crate) fn change_radii(skeleton: &mut Skeleton, change: impl Fn(f64) -> f64)
     }
 }
 
-/// Replaces radii that are no radii by what the path around them says.
-pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+/// Replaces radii that are no radii by `unknown` (µm), or by what the path around them says.
+pub(crate) fn mend_radii(skeleton: &mut Skeleton, unknown: Option<f64>, warnings: &mut Warnings) {
     let good = |r: f64| r.is_finite() && r > 0.0;
     if skeleton.nodes().iter().all(|n| good(n.radius)) {
         return;
     }
+    let mut tell = |sample: i64, radius: f64, from_neighbors: bool| match from_neighbors {
+        true => warnings.add(
+            "radius_mended",
+            Some(sample),
+            "radius was zero, negative or no number: taken from its neighbors",
+        ),
+        false => warnings.add(
+            "radius_unknown",
+            Some(sample),
+            &format!("no radius here or along the path: {radius} µm taken; --radius says another"),
+        ),
+    };
     let fallback = median(
         skeleton
             .nodes()
@@ -78,18 +90,30 @@ pub(crate) fn mend_radii(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         if good(node.radius) {
             continue;
         }
-        let radius = match (up[i], down[i]) {
-            (Some((a, da)), Some((b, db))) if da + db > 0.0 => (a * db + b * da) / (da + db),
-            (Some((r, _)), _) | (None, Some((r, _))) => r,
-            (None, None) => fallback,
+        let near = match (up[i], down[i]) {
+            (Some((a, da)), Some((b, db))) if da + db > 0.0 => Some((a * db + b * da) / (da + db)),
+            (Some((r, _)), _) | (None, Some((r, _))) => Some(r),
+            (None, None) => None,
         };
+        let near = near.filter(|_| unknown.is_none());
+        let radius = near.or(unknown).unwrap_or(fallback);
         shapes.set_radius(i as u32, radius);
-        warnings.add(
-            "radius_mended",
-            Some(node.sample),
-            "radius was zero, negative or no number: taken from its neighbors",
-        );
+        tell(node.sample, radius, near.is_some());
     }
+}
+
+/// Makes neurites at least this thick (µm).
+pub(crate) fn thicken(skeleton: &mut Skeleton, least: f64, warnings: &mut Warnings) {
+    let thin = |node: &&SkeletonNode| node.radius < least;
+    let mut thin = skeleton.nodes().iter().filter(thin);
+    let Some(first) = thin.next().map(|node| node.sample) else {
+        return;
+    };
+    let others = thin.count();
+    let message = "thinner than the least radius that was asked for: made as thick";
+    warnings.add("radius_raised", Some(first), message);
+    warnings.add_many("radius_raised", others, message);
+    change_radii(skeleton, |radius| radius.max(least));
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -8,13 +8,13 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, SurfaceMesh, SurfaceVertex};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement, patch_points};
 
-use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
+use crate::skeleton::{NONE, Root, Skeleton};
 
 /// Levels at which a suspicious surface is looked at: the rings alone, what is between them, and that more finely.
 const LEVELS: [u32; 3] = [1, 2, 4];
-/// The surface is within the box around all traced points, each with so many radii around it. Finer levels reach up to a
-/// tenth farther, and nothing is to be beyond two radii.
-const MOST_RADII: f32 = 1.8;
+/// The surface is within the box around all traced points, each with so many radii around it. Between
+/// these levels' points it may reach farther, and nothing is to be beyond two radii.
+const MOST_RADII: f32 = 1.5;
 
 /// The file's own numbers of samples on pieces of the surface that are inside out, or where it is far from the tracing: none
 /// of a sound one. Only where a tube turns over, or a loft reaches far, is the whole surface looked at, which takes as long
@@ -63,30 +63,36 @@ impl Reach {
     }
 }
 
+/// A ring whose normal is this far from the way to the next one bends the tube between them beyond both: cosine of 73°.
+const LEANING: f32 = 0.3;
+
+/// Whether a tube's patch turns over, or a patch that may reach farther than its corners does.
 fn is_suspicious(mesh: &CoarseMesh, reach: &Reach, patch: usize) -> bool {
+    let reaches_far = || {
+        let mut points = Vec::with_capacity(25);
+        patch_points(mesh, patch, 4, &RefineOptions::default(), &mut points);
+        !points.into_iter().all(|point| reach.holds(point))
+    };
     match mesh.patches[patch].kind {
-        PatchKind::Lateral => turns_over(mesh, &mesh.patches[patch]),
-        PatchKind::Loft => {
-            let mut points = Vec::with_capacity(25);
-            patch_points(mesh, patch, 4, &RefineOptions::default(), &mut points);
-            !points.into_iter().all(|point| reach.holds(point))
-        }
+        PatchKind::Lateral => match least_cosine(mesh, &mesh.patches[patch]) {
+            cosine if cosine < 0.0 => true,
+            cosine if cosine < LEANING => reaches_far(),
+            _ => false,
+        },
+        PatchKind::Loft => reaches_far(),
         PatchKind::Soma | PatchKind::Cap => false,
     }
 }
 
-/// Whether the two rings of a tube's patch look apart, or one of them away from the other.
-fn turns_over(mesh: &CoarseMesh, patch: &Patch) -> bool {
+/// Of the angles between the normals of a tube's two rings and the way from one to the other, the cosine of the greatest.
+fn least_cosine(mesh: &CoarseMesh, patch: &Patch) -> f32 {
     let point = |corner: u32| &mesh.tracing[mesh.vertices[corner as usize].tracing as usize];
     let (near, far) = (point(patch.corners[0]), point(patch.corners[3]));
-    let way = far.center - near.center;
-    [
-        near.tangent.dot(far.tangent),
-        near.tangent.dot(way),
-        far.tangent.dot(way),
-    ]
-    .into_iter()
-    .any(|cosine| cosine < 0.0)
+    let way = (far.center - near.center).normalize_or_zero();
+    near.tangent
+        .dot(far.tangent)
+        .min(near.tangent.dot(way))
+        .min(far.tangent.dot(way))
 }
 
 /// Least volume of a piece, as a share of that of tubes with its area and radii: half of one times the other. A tube that

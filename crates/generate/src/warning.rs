@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 32] = [
+pub(crate) const CODES: [&str; 34] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -24,6 +24,8 @@ pub(crate) const CODES: [&str; 32] = [
     "one_point_neurite",
     "one_point_tree",
     "radius_mended",
+    "radius_raised",
+    "radius_unknown",
     "ring_limited",
     "ring_moved",
     "ring_nearer",

@@ -11,6 +11,7 @@ pub(crate) mod markers;
 pub(crate) mod meshes;
 pub(crate) mod numbers;
 pub(crate) mod out;
+pub(crate) mod radius;
 pub(crate) mod rings;
 pub(crate) mod shard;
 #[cfg(feature = "render")]

@@ -80,7 +80,7 @@ impl Remark {
 
 /// Codes of warnings that the user should look into. Others are about usual repairs: nearly every
 /// tracing has points that are closer together than they are thick, for example.
-const CONCERNS: [&str; 18] = [
+const CONCERNS: [&str; 21] = [
     "disconnected",
     "far_from_soma",
     "negative_radius",
@@ -88,14 +88,17 @@ const CONCERNS: [&str; 18] = [
     "one_point_tree",
     "other_cells_left_out",
     "radius_mended",
+    "radius_unknown",
     "ring_unused",
     "rings_cross",
+    "simplified",
     "several_somata",
     "soma_folded",
     "soma_inside_neurite",
     "soma_of_one_point",
     "soma_radius_mended",
     "soma_zero_radius",
+    "unit_not_applied",
     "unknown_expression",
     "untyped_tree",
     "zero_radius",

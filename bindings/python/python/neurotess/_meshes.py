@@ -38,6 +38,8 @@ if TYPE_CHECKING:
         poisson: float | None
         soma_scale: float | None
         radius_factor: float | None
+        radius: float | None
+        min_radius: float | None
         soma_sphere: Literal["cube", "octahedron"] | None
         soma_level: int | None
         ring: Mapping[int, float] | None
@@ -246,6 +248,8 @@ def mesh(
     soma_scale: float | None = None,
     radii: Literal["traced", "equal-area"] | None = None,
     radius_factor: float | None = None,
+    radius: float | None = None,
+    min_radius: float | None = None,
     soma_sphere: Literal["cube", "octahedron"] | None = None,
     soma_level: int | None = None,
     ring: Mapping[int, float] | None = None,
@@ -282,6 +286,7 @@ def mesh(
     - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
       ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume
     - `radius_factor`: a factor on the radii of neurites, as for printing in three dimensions
+    - `radius`: that of points without one (µm), else taken from their neighbors; `min_radius`: the least of neurites
     - `smooth`: smooths the noise of the tracing away by this length (µm), or ``"auto"``
     - `types`: keeps only these, as in ``["axon", 3, "custom_9"]``
 
@@ -311,6 +316,8 @@ def mesh(
         "soma_scale": soma_scale,
         "radii": radii,
         "radius_factor": radius_factor,
+        "radius": radius,
+        "min_radius": min_radius,
         "soma_sphere": soma_sphere,
         "soma_level": soma_level,
         "ring": ring,

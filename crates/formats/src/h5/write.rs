@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use hdf5_pure::{AttrValue, FileBuilder};
-use neurotess_morphology::{Attachment, Morphology};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
 
 use crate::Warning;
 use crate::losses::Losses;
@@ -27,7 +27,7 @@ pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<
         points.len() as i32 / 4
     };
     let mut structure: Vec<i32> = Vec::new();
-    let mut next = 0;
+    let (mut next, mut untyped) = (0, 0);
     let soma_rows = i32::from(!morphology.somata.is_empty());
     if soma_rows > 0 {
         structure.extend([0, 1, -1]);
@@ -42,7 +42,10 @@ pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<
             Attachment::Free if soma_rows > 0 => 0,
             Attachment::Free => -1,
         };
-        structure.extend([next, section.kind.0, parent]);
+        // Type 1 is the soma's alone: readers take points of it for an outline.
+        let is_untyped = section.kind == NeuriteKind::SOMA;
+        untyped += u64::from(is_untyped);
+        structure.extend([next, if is_untyped { 0 } else { section.kind.0 }, parent]);
         if let Attachment::Section(id) = section.attachment {
             let fork = morphology.points[morphology.sections[id.index()].end as usize - 1];
             push(fork.position, fork.radius);
@@ -69,5 +72,7 @@ pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<
     writer.flush()?;
     let mut losses = Losses::of(morphology);
     losses.header(morphology);
+    let message = "a section of type 1 in a neurite is written without a type";
+    losses.add("types_changed", message, untyped);
     Ok(losses.into_warnings())
 }

@@ -73,8 +73,6 @@ fn interpret(
     ids::resolve(&mut records, warnings)?;
     units::apply(&mut records, warnings);
     conventions::fork_and_end_types(&mut records, warnings);
-    conventions::coincident_somata(&mut records, warnings);
-    conventions::roots_in_somata(&mut records, warnings);
     let Records {
         nodes,
         lines,

@@ -1,6 +1,7 @@
 //! The unit that a header names: navis writes `# Meta: {…, "units": "8 nanometer", …}`, for cells in voxels, too.
 
 use super::rows::Records;
+use crate::unit::micrometers;
 use crate::warning::Warnings;
 
 /// What the header says of the unit, in a warning: code, line.
@@ -74,32 +75,17 @@ fn factor(unit: &str) -> Option<f64> {
         "" => 1.0,
         count => count.parse::<f64>().ok()?,
     };
-    let factor = count * of_name(name)?;
+    let factor = count * micrometers(name)?;
     (factor.is_finite() && factor > 0.0).then_some(factor)
-}
-
-/// Micrometers in a unit of this name.
-fn of_name(name: &str) -> Option<f64> {
-    let name = name.trim().to_lowercase();
-    let name = match name.len() {
-        0..=2 => name.as_str(),
-        _ => name.trim_end_matches('s'),
-    };
-    Some(match name {
-        "nm" | "nanometer" | "nanometre" => 1e-3,
-        "um" | "µm" | "μm" | "micron" | "micrometer" | "micrometre" => 1.0,
-        "mm" | "millimeter" | "millimetre" => 1e3,
-        "cm" | "centimeter" | "centimetre" => 1e4,
-        "m" | "meter" | "metre" => 1e6,
-        "angstrom" | "å" => 1e-4,
-        _ => return None,
-    })
 }
 
 /// A unit other than the micrometer in a comment like `units: nm` or `unit = pixels`.
 fn spoken(line: &str) -> Option<&str> {
     let lower = line.to_ascii_lowercase();
     let at = lower.find("unit")?;
+    if line[..at].ends_with(char::is_alphabetic) {
+        return None;
+    }
     let rest = line[at..].trim_start_matches(|c: char| c.is_ascii_alphabetic());
     let rest = rest.trim_start().strip_prefix([':', '='])?.trim();
     let word = rest
@@ -107,7 +93,7 @@ fn spoken(line: &str) -> Option<&str> {
         .find(|word| word.chars().any(char::is_alphabetic))?;
     let is_unknown_length =
         ["pixel", "pixels", "voxel", "voxels", "px"].contains(&word.to_ascii_lowercase().as_str());
-    let is_other = of_name(word).is_some_and(|factor| factor != 1.0);
+    let is_other = micrometers(word).is_some_and(|factor| factor != 1.0);
     (is_other || is_unknown_length).then_some(word)
 }
 

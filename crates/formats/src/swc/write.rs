@@ -5,27 +5,32 @@
 
 use std::io::{self, BufWriter, Write};
 
-use neurotess_morphology::{Attachment, Morphology, Section};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Section, Soma};
 
+use crate::Warning;
+use crate::losses::Losses;
 use crate::number::decimal;
 
 /// Writes a morphology as SWC.
 ///
 /// Samples keep their numbers; where these repeat, are negative or too few, the rows are numbered
-/// from 1 on. A neurite of type 1 on the soma, which only other formats can have, becomes a part of
-/// the soma.
+/// from 1 on. What SWC cannot say is returned: outlines of somata that would be read as something else,
+/// which become a sphere of their radius, and neurites of type 1 on the soma, which get no type. Only other
+/// formats have those.
 ///
 /// # Errors
 /// Those of the writer.
 ///
 /// # Panics
 /// If indices in the morphology point outside its arrays.
-pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<()> {
+pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<Vec<Warning>> {
     let mut rows = Rows {
         morphology,
         writer: BufWriter::with_capacity(1 << 16, writer),
         ids: Ids::of(morphology),
         text: String::new(),
+        is_sphere: morphology.somata.iter().map(is_read_otherwise).collect(),
+        untyped: untyped(morphology),
     };
     for line in morphology
         .header
@@ -43,10 +48,44 @@ pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<()> {
     for soma in 0..morphology.somata.len() {
         rows.soma(soma)?;
     }
-    for section in &morphology.sections {
-        rows.section(section)?;
+    for (section, &untyped) in morphology.sections.iter().zip(&rows.untyped.clone()) {
+        rows.section(section, untyped)?;
     }
-    rows.writer.flush()
+    rows.writer.flush()?;
+    let mut losses = Losses::default();
+    let count = |list: &[bool]| list.iter().filter(|&&it| it).count() as u64;
+    losses.add(
+        "soma_as_sphere",
+        "the outline of a soma is written as a sphere of its radius",
+        count(&rows.is_sphere),
+    );
+    losses.add(
+        "types_changed",
+        "a section of type 1 on the soma is written without a type",
+        count(&rows.untyped),
+    );
+    losses.spines(morphology);
+    Ok(losses.into_warnings())
+}
+
+/// Whether the samples of a soma would be read as another one: outlines of formats that have them.
+fn is_read_otherwise(soma: &Soma) -> bool {
+    let read = Soma::from_samples(soma.samples.clone());
+    let most = 1e-4 * soma.radius.abs();
+    (read.radius - soma.radius).abs() > most || read.center.distance(soma.center) > most
+}
+
+/// Which sections would be read as the soma's.
+fn untyped(morphology: &Morphology) -> Vec<bool> {
+    let mut untyped: Vec<bool> = Vec::with_capacity(morphology.sections.len());
+    for section in &morphology.sections {
+        let on_soma = match section.attachment {
+            Attachment::Soma { .. } | Attachment::Free => true,
+            Attachment::Section(parent) => untyped[parent.index()],
+        };
+        untyped.push(on_soma && section.kind == NeuriteKind::SOMA);
+    }
+    untyped
 }
 
 /// Numbers of the samples.
@@ -59,7 +98,7 @@ struct Ids {
 
 impl Ids {
     fn of(morphology: &Morphology) -> Self {
-        let own = |s: &neurotess_morphology::Soma| s.samples.iter().map(|s| s.id).collect();
+        let own = |s: &Soma| s.samples.iter().map(|s| s.id).collect();
         let somata: Vec<Vec<i64>> = morphology.somata.iter().map(own).collect();
         let mut all: Vec<i64> = somata.iter().flatten().copied().collect();
         all.extend(&morphology.sample_ids);
@@ -88,11 +127,19 @@ struct Rows<'a, W: Write> {
     ids: Ids,
     /// The row being made.
     text: String,
+    /// By soma: whether it is written as a sphere.
+    is_sphere: Vec<bool>,
+    /// By section: whether it is written without its type.
+    untyped: Vec<bool>,
 }
 
 impl<W: Write> Rows<'_, W> {
     fn soma(&mut self, index: usize) -> io::Result<()> {
         let soma = &self.morphology.somata[index];
+        if self.is_sphere[index] {
+            let id = self.ids.somata[index][0];
+            return self.row(id, 1, soma.center, soma.radius, -1);
+        }
         for (i, sample) in soma.samples.iter().enumerate() {
             let ids = &self.ids.somata[index];
             let parent = sample.parent.map_or(-1, |p| ids[p as usize]);
@@ -101,10 +148,14 @@ impl<W: Write> Rows<'_, W> {
         Ok(())
     }
 
-    fn section(&mut self, section: &Section) -> io::Result<()> {
+    fn section(&mut self, section: &Section, untyped: bool) -> io::Result<()> {
         let morphology = self.morphology;
+        let kind = if untyped { 0 } else { section.kind.0 };
         let mut parent = match section.attachment {
             Attachment::Free => -1,
+            Attachment::Soma { soma, .. } if self.is_sphere[soma as usize] => {
+                self.ids.somata[soma as usize][0]
+            }
             Attachment::Soma { soma, sample } => self.ids.somata[soma as usize][sample as usize],
             Attachment::Section(id) => {
                 self.ids.points[morphology.sections[id.index()].end as usize - 1]
@@ -113,7 +164,7 @@ impl<W: Write> Rows<'_, W> {
         for i in section.range() {
             let point = morphology.points[i];
             let id = self.ids.points[i];
-            self.row(id, section.kind.0, point.position, point.radius, parent)?;
+            self.row(id, kind, point.position, point.radius, parent)?;
             parent = id;
         }
         Ok(())

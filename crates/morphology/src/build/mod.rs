@@ -15,6 +15,7 @@ mod origin;
 mod size;
 mod somata;
 mod tree;
+mod within;
 
 use glam::DVec3;
 use thiserror::Error;
@@ -135,15 +136,27 @@ fn build(
     let order = tree::parents_first(&parents, &links)?;
     let mut notes = Notes::default();
 
-    let somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
+    let mut somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
     if tree::hang_up_by(&mut parents, &somata.tops) {
         links = Links::of(&parents);
     }
+    if matches!(somata_are, Traced::Samples) {
+        somata.merge_coincident(nodes, &mut notes);
+    }
+    if let [_, second, ..] = &somata.members[..] {
+        let count = somata.members.len() as u64;
+        notes.add_many(Oddity::SeveralSomata, second[0], count);
+    }
+    let roots = match somata_are {
+        Traced::Samples => within::RootsInSomata::find(nodes, &parents, &somata, &mut notes),
+        Traced::Outlines => within::RootsInSomata::default(),
+    };
     let walk = Walk {
         nodes,
         parents: &parents,
         links: &links,
         somata: &somata,
+        roots: &roots,
     };
     let starts = walk.starts(&mut notes);
     let frame = Frame::choose(nodes, walk.anchor(&starts));
@@ -195,6 +208,7 @@ struct Walk<'a> {
     parents: &'a [u32],
     links: &'a Links,
     somata: &'a Somata,
+    roots: &'a within::RootsInSomata,
 }
 
 impl Walk<'_> {
@@ -206,7 +220,9 @@ impl Walk<'_> {
             if self.somata.of(i) != NONE {
                 continue;
             }
-            if parent == NONE {
+            if self.roots.member(i).is_some() {
+                starts.push(i);
+            } else if parent == NONE {
                 free += 1;
                 first_free = first_free.min(i);
                 starts.push(i);
@@ -277,9 +293,13 @@ impl Walk<'_> {
     }
 
     fn attachment(&self, start: u32) -> Attachment {
-        match self.parents[start as usize] {
-            NONE => Attachment::Free,
-            p => Attachment::Soma {
+        let on = match self.parents[start as usize] {
+            NONE => self.roots.member(start),
+            parent => Some(parent),
+        };
+        match on {
+            None => Attachment::Free,
+            Some(p) => Attachment::Soma {
                 soma: self.somata.of(p),
                 sample: self.somata.sample(p),
             },

@@ -13,6 +13,8 @@ pub enum Oddity {
     NoSoma,
     /// A tree's root was a neurite's point and its soma elsewhere: the soma is the root now.
     SomaNotRoot,
+    /// Somata lie in the same place: taken as one.
+    CoincidentSomata,
     /// Samples of type 1 form several somata.
     SeveralSomata,
     /// The samples of a soma fork, other than those of a three-point soma.
@@ -21,6 +23,8 @@ pub enum Oddity {
     SomaZeroRadius,
     /// Samples of type 1 inside a neurite, apart from the tree's soma: kept as points.
     SomaInsideNeurite,
+    /// Neurites that hang on nothing and begin within a soma: taken as the soma's.
+    RootInSoma,
     /// Neurites that hang on nothing: beside a soma, or several of them.
     Disconnected,
     /// Points with radius zero.
@@ -37,10 +41,12 @@ impl Oddity {
         match self {
             Self::NoSoma => "no_soma",
             Self::SomaNotRoot => "soma_not_root",
+            Self::CoincidentSomata => "coincident_somata",
             Self::SeveralSomata => "several_somata",
             Self::SomaBranches => "soma_branches",
             Self::SomaZeroRadius => "soma_zero_radius",
             Self::SomaInsideNeurite => "soma_inside_neurite",
+            Self::RootInSoma => "root_in_soma",
             Self::Disconnected => "disconnected",
             Self::ZeroRadius => "zero_radius",
             Self::NegativeRadius => "negative_radius",
@@ -54,10 +60,12 @@ impl fmt::Display for Oddity {
         f.write_str(match self {
             Self::NoSoma => "no sample is of type 1: the cell has no soma",
             Self::SomaNotRoot => "the soma is not the root of its tree: re-rooted there",
+            Self::CoincidentSomata => "somata in the same place: taken as one",
             Self::SeveralSomata => "several separate somata: the thickest is taken as the main one",
             Self::SomaBranches => "the samples of the soma fork: taken as frusta along the links, or as an outline if they have no thickness",
             Self::SomaZeroRadius => "the soma has no radius",
             Self::SomaInsideNeurite => "soma samples inside a neurite: kept as points of type 1",
+            Self::RootInSoma => "neurites that begin within the soma and hang on nothing: taken as the soma's",
             Self::Disconnected => "neurites that are connected to nothing: kept where they are",
             Self::ZeroRadius => "points with radius zero",
             Self::NegativeRadius => "negative radius: kept, measured as zero",

@@ -52,6 +52,16 @@ impl Somata {
         self.sample[node as usize]
     }
 
+    /// Changes the soma of one of its samples.
+    pub(super) fn set_soma(&mut self, node: u32, soma: u32) {
+        self.role[node as usize] = soma;
+    }
+
+    /// Changes which sample of its soma a node stands for.
+    pub(super) fn set_sample(&mut self, node: u32, sample: u32) {
+        self.sample[node as usize] = sample;
+    }
+
     /// `order` has parents before children; `None` if the nodes themselves do.
     pub(super) fn find(
         nodes: &[Node],
@@ -88,9 +98,6 @@ impl Somata {
             .filter(|&&top| parents[top as usize] != NONE)
         {
             notes.add(Oddity::SomaNotRoot, top);
-        }
-        if let [_, second, ..] = somata.tops[..] {
-            notes.add_many(Oddity::SeveralSomata, second, somata.tops.len() as u64);
         }
         somata
     }

@@ -9,6 +9,7 @@ use neurotess::mesh::{Format, Unit};
 use crate::options::cells::CellArgs;
 use crate::options::numbers::positive;
 use crate::options::out::OutArgs;
+use crate::options::radius::RadiusArgs;
 use crate::options::rings::RingArgs;
 use crate::options::shard::Shard;
 use crate::options::soma::SomaArg;
@@ -87,6 +88,8 @@ pub(crate) struct MeshArgs {
           value_parser = crate::options::numbers::radius_factor, allow_negative_numbers = true,
           help_heading = "Surface")]
     pub(crate) radius_factor: f64,
+    #[command(flatten)]
+    pub(crate) radius: RadiusArgs,
     /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 3 --radii equal-area,
     /// or an error that says where it fails
     #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],

@@ -77,6 +77,8 @@ impl MeshOptions {
         let generate = format!("{generate:?}");
         let generate = generate
             .replace(", equal_area: None", "")
+            .replace(", unknown_radius: None", "")
+            .replace(", least_radius: 0.0", "")
             .replace(", crossings: Keep", "")
             .replace(", smooth: None", "");
         let unit = match unit {
@@ -280,6 +282,8 @@ fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
         rings: args.rings.positions(),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
         smooth: args.smooth.unwrap_or_default(),
+        unknown_radius: args.radius.radius,
+        least_radius: args.radius.min_radius.unwrap_or(0.0),
         ..GenerateOptions::default()
     })
 }
@@ -337,5 +341,12 @@ mod tests {
         options.generate.smooth = Smooth::Length(2.0);
         let text = options.fingerprint();
         assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
+        options.generate.unknown_radius = Some(0.4);
+        options.generate.least_radius = 0.1;
+        let text = options.fingerprint();
+        assert!(
+            text.contains(", unknown_radius: Some(0.4), least_radius: 0.1 } "),
+            "{text}"
+        );
     }
 }

@@ -16,6 +16,7 @@ use crate::options::cells::CellArgs;
 use crate::options::gpu::GpuArgs;
 use crate::options::markers::MarkerArgs;
 use crate::options::meshes::MeshArgs;
+use crate::options::radius::RadiusArgs;
 use crate::options::rings::RingArgs;
 use crate::options::size::Size;
 use crate::options::soma::SomaArg;
@@ -135,6 +136,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FACTOR", value_parser = crate::options::numbers::radius_factor,
           allow_negative_numbers = true, help_heading = "Picture")]
     pub(crate) radius_factor: Option<f64>,
+    #[command(flatten)]
+    pub(crate) radius: RadiusArgs,
     /// How vertices are made [default: adaptive; homogeneous where --level is given]
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Refinement")]
     pub(crate) lod: Option<LodMode>,

@@ -78,6 +78,8 @@ pub(super) fn options(args: &RenderArgs) -> GenerateOptions {
         soma: args.soma.method(),
         rings: args.rings.positions(),
         radius_factor: args.radius_factor(),
+        unknown_radius: args.radius.radius,
+        least_radius: args.radius.min_radius.unwrap_or(0.0),
         kinds: (!args.types.is_empty()).then(|| kinds.collect()),
         ..GenerateOptions::default()
     }
