@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Faces, Placed, Region, Surface, SurfaceVertex, Unit};
+use crate::{Faces, Placed, Region, Soundness, Surface, SurfaceVertex, Unit};
 
 /// A surface in µm with coordinates and radii in another unit. Nothing is copied.
 pub struct InUnit<'a> {
@@ -31,6 +31,10 @@ impl Surface for InUnit<'_> {
 
     fn regions(&self) -> Vec<Region> {
         self.placed.regions()
+    }
+
+    fn soundness(&self) -> Option<Soundness> {
+        self.placed.soundness()
     }
 
     fn vertex_count(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3, Mat3};
 
-use crate::{Faces, Region, Surface, SurfaceVertex, Unit};
+use crate::{Faces, Region, Soundness, Surface, SurfaceVertex, Unit};
 
 /// A surface under a rotation, a uniform scale and a translation. Nothing is copied: blocks are moved
 /// when they are asked for.
@@ -48,6 +48,10 @@ impl Surface for Placed<'_> {
             region.seed = self.origin + (self.linear * offset).as_dvec3();
         }
         regions
+    }
+
+    fn soundness(&self) -> Option<Soundness> {
+        self.surface.soundness()
     }
 
     fn vertex_count(&self) -> usize {

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec3};
 
-use crate::Unit;
+use crate::{Soundness, Unit};
 
 /// A vertex of a surface with the attributes that are exported.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,6 +55,11 @@ pub trait Surface: Sync {
     /// Parts of the inside that walls keep apart ([`with_walls`](crate::with_walls)); formats that name them do.
     fn regions(&self) -> Vec<Region> {
         Vec::new()
+    }
+    /// What it is beside what it may be, for surfaces that know their tracing: what is unsound is not written. May
+    /// evaluate the whole surface.
+    fn soundness(&self) -> Option<Soundness> {
+        None
     }
     /// Number of vertices of all blocks.
     fn vertex_count(&self) -> usize;

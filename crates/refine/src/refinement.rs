@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{
-    CoarseMesh, Faces, Patch, PatchKind, Role, Surface, SurfaceVertex, TracingPoint,
+    CoarseMesh, Extent, Faces, Patch, PatchKind, Role, Soundness, Surface, SurfaceVertex,
+    TracingPoint,
 };
 use rayon::prelude::*;
 
@@ -98,18 +99,23 @@ impl<'m> Refinement<'m> {
     /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
     /// cores.
     pub fn volume_and_area(&self) -> (f64, f64) {
+        let measured = self.measured();
+        (measured.volume, measured.area)
+    }
+
+    fn measured(&self) -> Measured {
         let center = self
             .mesh
             .vertices
             .first()
             .map_or(Vec3::ZERO, |v| v.position);
         let blocks = self.mesh.patches.len().div_ceil(BLOCK);
-        let sums: Vec<(f64, f64)> = (0..blocks)
+        let sums: Vec<Measured> = (0..blocks)
             .into_par_iter()
             .map(|block| {
                 let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
                 let mut faces = Faces::default();
-                let mut sum = (0.0, 0.0);
+                let mut sum = Measured::default();
                 let mut positions = Vec::new();
                 let mut rows = Vec::new();
                 for patch in block * BLOCK..end {
@@ -122,7 +128,13 @@ impl<'m> Refinement<'m> {
                 sum
             })
             .collect();
-        sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1))
+        let mut sum = Measured::default();
+        for block in sums {
+            sum.volume += block.volume;
+            sum.area += block.area;
+            sum.extent = sum.extent.and(block.extent);
+        }
+        sum
     }
 
     fn measure_patch(
@@ -131,12 +143,16 @@ impl<'m> Refinement<'m> {
         center: Vec3,
         faces: &Faces,
         positions: &mut Vec<(u32, DVec3)>,
-        sum: &mut (f64, f64),
+        sum: &mut Measured,
     ) {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         let corners = self.mesh.patches[patch].corners;
         positions.clear();
-        let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
+        let mut extent = sum.extent;
+        let mut add = |index: u32, p: Vec3| {
+            extent = extent.with(p);
+            positions.push((index, (p - center).as_dvec3()));
+        };
         for v in corners {
             add(v, self.mesh.vertices[v as usize].position);
         }
@@ -155,6 +171,7 @@ impl<'m> Refinement<'m> {
                 add(index, shape.interior(&self.options, x, y).0);
             }
         }
+        sum.extent = extent;
         positions.sort_unstable_by_key(|&(index, _)| index);
         let at = |index: u32| {
             let found = positions.binary_search_by_key(&index, |&(i, _)| i);
@@ -167,8 +184,8 @@ impl<'m> Refinement<'m> {
         for [a, b, c] in faces.triangles.iter().copied().chain(halves) {
             let [a, b, c] = [a, b, c].map(at);
             let cross = (b - a).cross(c - a);
-            sum.0 += a.dot(cross) / 6.0;
-            sum.1 += 0.5 * cross.length();
+            sum.volume += a.dot(cross) / 6.0;
+            sum.area += 0.5 * cross.length();
         }
     }
 
@@ -336,9 +353,37 @@ fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32)
     }
 }
 
+/// What all patches of a surface add up to.
+struct Measured {
+    /// Volume (µm³) and area (µm²).
+    volume: f64,
+    area: f64,
+    extent: Extent,
+}
+
+impl Default for Measured {
+    fn default() -> Self {
+        Self {
+            volume: 0.0,
+            area: 0.0,
+            extent: Extent::NONE,
+        }
+    }
+}
+
 impl Surface for Refinement<'_> {
     fn origin(&self) -> DVec3 {
         self.mesh.origin
+    }
+
+    fn soundness(&self) -> Option<Soundness> {
+        let Measured { volume, extent, .. } = self.measured();
+        let reach = self.mesh.reach();
+        Some(Soundness {
+            volume,
+            extent,
+            reach,
+        })
     }
 
     fn vertex_count(&self) -> usize {

@@ -301,7 +301,7 @@ impl Mesher {
                 recipe.mesh(&read.morphology, stopped)
             })?;
             let at = instance.world_from_cell(soma_center(&read.morphology));
-            Ok(recipe.surface(&mesh, |surface| placed(surface, at, stopped)))
+            recipe.surface(&mesh, |surface| placed(surface, at, stopped))
         })?;
         of_made(py, made)
     }

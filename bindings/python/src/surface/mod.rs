@@ -42,7 +42,7 @@ impl Recipe {
         let (recipe, morphology) = (self.0.clone(), cell.morphology.clone());
         let made = stoppable(py, threads, &Stop::of(stop), move |stopped| {
             let cell = recipe.mesh(&morphology, stopped)?;
-            Ok(recipe.surface(&cell, |surface| Columns::of(surface, stopped)))
+            recipe.surface(&cell, |surface| Columns::of(surface, stopped))
         })?;
         of_made(py, made)
     }

@@ -14,6 +14,8 @@ mod h5_files;
 mod json;
 #[cfg(feature = "xml")]
 mod knossos;
+#[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
+mod losses;
 #[cfg(all(feature = "neuroml", feature = "xml", feature = "json"))]
 mod mutated;
 #[cfg(feature = "xml")]

@@ -110,7 +110,7 @@ fn fault(cell: &Morphology, generated: &Generated) -> Option<String> {
                 a.dot(b.cross(c)) / 6.0
             })
             .sum();
-        if !(volume > 0.0) {
+        if volume.is_nan() || volume <= 0.0 {
             return Some(format!("level {level}: a volume of {volume}"));
         }
     }

@@ -27,7 +27,7 @@ use glam::DVec3;
 
 #[cfg(doc)]
 use crate::FaceLabel;
-use crate::{Faces, Format, Surface, SurfaceVertex};
+use crate::{Faces, Format, Surface, SurfaceVertex, Unsound};
 use in_order::in_order;
 
 /// Why a surface could not be written.
@@ -60,6 +60,9 @@ pub enum WriteError {
         "vertex {0} of the surface is not finite: check the radii and coordinates of the tracing"
     )]
     NotFinite(usize),
+    /// It is no surface around its tracing.
+    #[error(transparent)]
+    Unsound(#[from] Unsound),
     /// A bug of the surface: its blocks hold not what it announced.
     #[error("the surface announced {announced} {what} but its blocks hold {found}")]
     Inconsistent {
@@ -96,6 +99,9 @@ pub fn write<W: Write + Seek>(
     if surface.vertex_count() > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(surface.vertex_count()));
     }
+    if let Some(soundness) = surface.soundness() {
+        soundness.check()?;
+    }
     let mut file = File::begin(out)?;
     match format {
         Format::Ply => ply::write(surface, &mut file),
@@ -125,6 +131,11 @@ pub fn write_glb<W: Write + Seek>(
     let most = surfaces.iter().map(|surface| surface.vertex_count()).max();
     if let Some(most) = most.filter(|&most| most > u32::MAX as usize) {
         return Err(WriteError::TooManyVertices(most));
+    }
+    for surface in surfaces {
+        if let Some(soundness) = surface.soundness() {
+            soundness.check()?;
+        }
     }
     let mut file = File::begin(out)?;
     glb::write_all(surfaces, nodes, &mut file)?;

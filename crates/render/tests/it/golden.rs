@@ -140,8 +140,8 @@ fn compare(name: &str, image: &Image) {
     let before = read(&kept);
     let difference = Difference::between(&before, image);
     if difference.is_seen() {
-        let folder = std::env::temp_dir().join("neurotess-golden");
-        fs::create_dir_all(&folder).expect("a folder for temporary files");
+        let folder = workspace().join("target/golden");
+        fs::create_dir_all(&folder).expect("a folder");
         let shown = Image {
             pixels: difference
                 .steps

@@ -78,12 +78,18 @@ impl MeshRecipe {
     }
 
     /// The surface of a cell that was meshed by this recipe, and what is known of it.
+    ///
+    /// # Errors
+    /// It is no surface around its tracing, which is a fault of ours.
     pub fn surface<T>(
         &self,
         CellMesh { meshed }: &CellMesh,
         take: impl FnOnce(&dyn Surface) -> T,
-    ) -> (T, MeshReport) {
+    ) -> Result<(T, MeshReport), String> {
         let surface = meshed.surface(&self.options);
+        if let Some(soundness) = surface.surface().soundness() {
+            soundness.check().map_err(|e| e.to_string())?;
+        }
         let (generated, merged) = (&meshed.generated, surface.merged());
         let report = MeshReport {
             closed: surface.topology.closed,
@@ -96,14 +102,14 @@ impl MeshRecipe {
             quality: merged.and_then(|merged| merged.quality),
             warnings: warnings(&[], meshed, &surface),
         };
-        (take(surface.surface()), report)
+        Ok((take(surface.surface()), report))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use neurotess::formats::{ReadOptions, swc};
-    use neurotess::mesh::SurfaceMesh;
+    use neurotess::mesh::{SurfaceMesh, measure_surface};
 
     use super::*;
 
@@ -119,7 +125,9 @@ mod tests {
             let recipe = recipe(options).expect("options");
             let running = AtomicBool::new(false);
             let cell = recipe.mesh(&read.morphology, &running).expect("a mesh");
-            let (mesh, report) = recipe.surface(&cell, |surface| SurfaceMesh::collect(surface));
+            let (mesh, report) = recipe
+                .surface(&cell, |surface| SurfaceMesh::collect(surface))
+                .expect("sound");
             assert!(report.closed && report.components == 1);
             mesh.faces.triangles.len()
         };
@@ -139,5 +147,31 @@ mod tests {
         let needs = told(&["--max-edge=2"]);
         assert!(needs.starts_with("--max-edge, --min-edge"), "{needs}");
         assert!(recipe(&["--help"]).is_err());
+    }
+
+    /// Thick, thin and back to where it began; to and fro on a line: what their tubes hold, however it is meshed.
+    #[test]
+    fn paths_that_turn_back_have_their_volume_however_they_are_meshed() {
+        let back = "1 2 0 5 0 8.45 -1\n2 2 0 0 0 2.29 1\n3 2 0 5 0 0.75 2\n4 2 0 -25 0 0.75 3\n5 2 0 -60 0 0.75 4\n";
+        let to_and_fro = "1 3 0 0 0 2 -1\n2 3 10 0 0 2 1\n3 3 5 0.05 0 2 2\n4 3 40 0 0 2 3\n";
+        for (text, volume) in [(back, 1900.0), (to_and_fro, 503.0)] {
+            let read = swc::read_bytes(text.as_bytes(), "cell.swc", &ReadOptions::default());
+            let cell = read.expect("a cell").morphology;
+            // What is moved apart goes around itself, which is longer.
+            for (options, most) in [
+                (&["--level", "4"][..], 1.1),
+                (&["--level", "8", "--crossings", "merge"], 1.1),
+                (&["--simulation"], 1.25),
+            ] {
+                let recipe = recipe(options).expect("options");
+                let stopped = AtomicBool::new(false);
+                let meshed = recipe.mesh(&cell, &stopped).expect("meshed");
+                let made = recipe.surface(&meshed, |surface| measure_surface(surface).volume);
+                let (made, report) = made.expect("sound");
+                assert!(report.closed && report.components == 1);
+                let share = made / volume;
+                assert!((0.9..most).contains(&share), "{options:?}: {made}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use neurotess::mesh::{Faces, Format, Region, Surface, SurfaceVertex, Unit};
+use neurotess::mesh::{Faces, Format, Region, Soundness, Surface, SurfaceVertex, Unit};
 
 use crate::report::Progress;
 
@@ -75,6 +75,10 @@ impl Surface for Observed<'_> {
 
     fn regions(&self) -> Vec<Region> {
         self.surface.regions()
+    }
+
+    fn soundness(&self) -> Option<Soundness> {
+        self.surface.soundness()
     }
 
     fn vertex_count(&self) -> usize {

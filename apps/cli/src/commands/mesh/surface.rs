@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use neurotess::generate::Separation;
 use neurotess::mesh::{
-    CoarseMesh, Quality, Surface, SurfaceMesh, Topology, measure_surface, quality,
+    CoarseMesh, Extent, Quality, Soundness, Surface, SurfaceMesh, Topology, measure_surface,
+    quality,
 };
 use neurotess::refine::{CoarseSurface, EdgeRule, Lod, Refinement};
 use neurotess::union::{
@@ -137,6 +138,13 @@ impl Merged {
                 at.map_or(-1, |points| points[0])
             )));
         }
+        let vertices = merged.mesh.vertices.iter();
+        let soundness = Soundness {
+            volume: measure_surface(&merged.mesh).volume,
+            extent: vertices.fold(Extent::NONE, |extent, v| extent.with(v.position)),
+            reach: mesh.reach(),
+        };
+        soundness.check().map_err(|e| Failure(e.to_string()))?;
         Ok(Self {
             topology: merged.topology,
             quality: options.simulation.then(|| quality(&merged.mesh)),
