@@ -15,6 +15,7 @@ mod meshed;
 mod messages;
 mod observed;
 mod options;
+mod pieces;
 mod run;
 mod size;
 mod smoothing;

@@ -4,6 +4,7 @@ use neurotess::generate::Generated;
 use neurotess::mesh::{Quality, Walled};
 use neurotess::union::{Kin, Part, UnionReport};
 
+use super::pieces;
 use super::surface::{CellSurface, Merged};
 use super::warning::CellWarning;
 use crate::report::Failure;
@@ -47,6 +48,9 @@ pub(super) fn check(surface: &CellSurface<'_>, generated: &Generated) -> Result<
 pub(super) fn warnings(merged: &Merged) -> Vec<CellWarning> {
     let mut warnings = of_crossings(&merged.report);
     warnings.extend(merged.quality.as_ref().and_then(of_triangles));
+    // Of a mesh for simulators alone: others may show several cells.
+    let simulated = merged.quality.is_some();
+    warnings.extend(simulated.then(|| pieces::warning(&merged.mesh)).flatten());
     warnings
 }
 
