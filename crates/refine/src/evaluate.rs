@@ -28,7 +28,7 @@ pub(crate) use edges::{
     CenterLine, Corner, EdgeCurve, EdgeKind, EdgeNormals, Jet, MOST_OFFSET, MOST_SWAY, SOMA_FILLET,
     edge, hermite_tangents, loft_controls, soma_controls,
 };
-use edges::{OverLength, cubic, first_leg, mix, most_squared};
+use edges::{OverLength, cubic, first_leg, longer, mix, most_squared};
 
 /// A patch ready to be evaluated inside.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,8 @@ struct Tube {
     line: CenterLine,
     offset_y: [Vec3; 2],
     radial_y: [Vec3; 2],
-    most_squared: f32,
+    /// The longest offset of the corners of each ring.
+    longest: [f32; 2],
 }
 
 /// A tube at some y: its center, and the offsets and radials at x = 0 and 1.
@@ -68,6 +69,7 @@ struct TubeRow {
     center: Jet,
     offsets: [Vec3; 2],
     radials: [Vec3; 2],
+    most_squared: f32,
 }
 
 impl<'s> PatchRows<'s> {
@@ -116,7 +118,7 @@ impl Tube {
             line: CenterLine::new(a, d, path),
             offset_y: [d.offset - a.offset, c.offset - b.offset],
             radial_y: [d.radial - a.radial, c.radial - b.radial],
-            most_squared: most_squared(&[a.offset, b.offset, c.offset, d.offset]),
+            longest: [longer(a.offset, b.offset), longer(d.offset, c.offset)],
         }
     }
 }
@@ -129,6 +131,7 @@ impl TubeRow {
             center: tube.line.at(y),
             offsets: [mix(a.offset, d.offset, y), mix(b.offset, c.offset, y)],
             radials: [mix(a.radial, d.radial, y), mix(b.radial, c.radial, y)],
+            most_squared: most_squared(tube.longest[0], tube.longest[1], y),
         }
     }
 
@@ -138,7 +141,7 @@ impl TubeRow {
         let change = |[at_0, at_1]: [Vec3; 2]| at_1 - at_0;
         let (offset, radial) = (blend(self.offsets), blend(self.radials));
         let over = OverLength::of(radial);
-        let most = self.tube.most_squared;
+        let most = self.most_squared;
         let around = over.jet(offset, change(self.offsets), change(self.radials));
         let around = around.within(most);
         let along = over.jet(offset, blend(self.tube.offset_y), blend(self.tube.radial_y));

@@ -88,8 +88,9 @@ fn within(jet: Jet, most_squared: f32) -> Jet {
     return Jet(jet.position * share, (jet.derivative - along) * share);
 }
 
-fn square(a: vec3<f32>) -> f32 {
-    return dot(a, a);
+// The longer of the offsets of two corners of a ring.
+fn longer(a: vec3<f32>, b: vec3<f32>) -> f32 {
+    return sqrt(max(dot(a, a), dot(b, b)));
 }
 
 fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
@@ -122,8 +123,9 @@ fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: 
     let radial_x = blend(b.radial - a.radial, c.radial - d.radial, y);
     let radial_y = radial_far - radial_near;
     let center = center_line(a, d, path, y);
-    let most = MOST_OFFSET * MOST_OFFSET
-        * max(max(square(a.offset), square(b.offset)), max(square(c.offset), square(d.offset)));
+    let longest = vec2(longer(a.offset, b.offset), longer(d.offset, c.offset));
+    let reach = MOST_OFFSET * (longest.x * (1.0 - y) + longest.y * y);
+    let most = reach * reach;
     let around = within(over_length(offset, offset_x, radial, radial_x), most);
     let along = within(over_length(offset, offset_y, radial, radial_y), most);
     return TubePoint(
