@@ -40,6 +40,12 @@ def command(*words: object) -> subprocess.CompletedProcess[str]:
         ({"types": {"soma": 3}, "reroot": 6}, ["--types", "soma=3", "--reroot", "6"]),
         ({"join": math.inf}, ["--join", "inf"]),
         ({"subtree": np.int64(3)}, ["--subtree", "3"]),
+        ({"cut": 4}, ["--cut", "4"]),
+        ({"cut": np.array([4, 6])}, ["--cut", "4", "--cut", "6"]),
+        ({"drop_types": "axon"}, ["--drop-types", "axon"]),
+        ({"drop_types": ["axon", 7]}, ["--drop-types", "axon,7"]),
+        ({"within": 25.5}, ["--within", "25.5"]),
+        ({"prune": 12}, ["--prune", "12"]),
         ({"smooth": "auto"}, ["--smooth", "auto"]),
         ({"smooth": 8}, ["--smooth", "8"]),
         ({"resample": 2.5}, ["--resample", "2.5"]),
@@ -75,6 +81,10 @@ def test_what_edits_do(cell: nt.Morphology) -> None:
     even = nt.edit(cell, resample=1)
     assert even.edits[0]["renumbered"] and len(even) > 3 * len(cell)
     assert len(nt.edit(cell, subtree=5)) == 2
+    assert nt.edit(cell, cut=[4, 6]).samples.tolist() == [2, 3, 5]
+    assert len(nt.edit(cell, drop_types="axon")) == 3
+    assert nt.edit(cell, within=15).samples.tolist() == [2, 7]
+    assert len(nt.edit(cell, prune=12)) == 4
     assert len(cell) == 5, "the cell itself stays"
 
 
@@ -107,6 +117,9 @@ def test_a_unit_that_was_dealt_with_is_not_warned_of() -> None:
         ({"rotate": {"w": 3}}, "an axis and degrees"),
         ({"mirror": "xy"}, "x, y or z"),
         ({"subtree": 77}, "no sample has the number 77"),
+        ({"cut": [77, 5, 78]}, "no samples have the numbers 77, 78"),
+        ({"drop_types": ["axon", "branch"]}, "'branch' for 'drop.types'"),
+        ({"within": 0}, "'0' for 'within'"),
         ({"reroot": 6}, "in a tree with a soma"),
         ({"resample": 1e-9}, "take a larger one"),
         ({"types": {"branch": 3}}, "'branch=3' for 'types'"),

@@ -30,6 +30,10 @@ def edit(
     reroot: int | Sequence[int] | None = None,
     join: float | None = None,
     subtree: int | None = None,
+    cut: int | Sequence[int] | None = None,
+    drop_types: str | int | Sequence[str | int] | None = None,
+    within: float | None = None,
+    prune: float | None = None,
     smooth: float | Literal["auto"] | None = None,
     resample: float | None = None,
     simplify: float | None = None,
@@ -53,6 +57,13 @@ def edit(
     - `join`: connects each piece without a soma to the nearest sample of another piece within this distance (µm;
       ``math.inf`` for any)
     - `subtree`: keeps this sample and what hangs on it
+    - `cut`: drops this sample and what hangs on it, or several
+    - `drop_types`: drops the samples of this type, or of several, as in ``["axon", 7]``; what hung on them is a piece
+      of its own then
+    - `within`: drops what is farther along the tree than this distance (µm) from the soma's center, or without a soma
+      from the root; neurites are cut at it
+    - `prune`: drops twigs, from an end up to the fork or soma before it, that are shorter than this length (µm): once,
+      so what becomes a twig by it stays
     - `smooth`: smooths noise away that is shorter than this length (µm), or ``"auto"``
     - `resample`: puts samples at this distance (µm) along each section, as nearly as equal parts allow
     - `simplify`: leaves out samples without which the membrane moves by no more than this tolerance (µm)
@@ -83,10 +94,13 @@ def edit(
     words += _words("units", [] if units is None else [units if isinstance(units, str) else _voxel(units)])
     words += _options.arguments({"mend_radii": mend_radii})
     words += _words("reroot", _several(reroot))
+    words += _options.arguments({"join": join, "subtree": subtree})
+    words += _words("cut", _several(cut))
+    words += _words("drop-types", _several(drop_types))
     words += _options.arguments(
         {
-            "join": join,
-            "subtree": subtree,
+            "within": within,
+            "prune": prune,
             "smooth": smooth,
             "resample": resample,
             "simplify": simplify,

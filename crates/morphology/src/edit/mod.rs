@@ -1,4 +1,4 @@
-//! Edits of a tracing: units, places, types, spacing, noise, roots, pieces, radii, spines.
+//! Edits of a tracing: units, places, types, spacing, noise, roots, pieces, cuts, radii, spines.
 //!
 //! An [`Edit`] says what to do, [`apply`] does several in the order given, each to what the one before made
 //! of the tracing, and an [`EditReport`] says what each has changed. The tracing itself stays as it is, so
@@ -35,6 +35,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cut;
 mod join;
 mod mend;
 mod nodes;
@@ -45,6 +46,7 @@ mod root;
 mod simplify;
 mod smooth;
 mod spines;
+mod within;
 
 use glam::{DAffine3, DVec3};
 use thiserror::Error;
@@ -88,6 +90,29 @@ pub enum Edit {
     Subtree {
         /// The file's number of the sample.
         sample: i64,
+    },
+    /// Takes away the samples of these numbers and all that hangs on them. A soma goes only as a whole, by its
+    /// first sample, and its neurites with it.
+    Cut {
+        /// The file's numbers of the samples. One may hang on another.
+        samples: Vec<i64>,
+    },
+    /// Takes away the samples of these types. What hung on them and is of another type stays where it is, as a
+    /// piece of its own.
+    DropTypes(Vec<NeuriteKind>),
+    /// Takes away what is farther along the tree (µm) than this distance: from the soma's center, the way to
+    /// a neurite's first sample being straight (as in [`paths`](crate::paths)), or without a soma from the root.
+    /// A neurite is cut at the distance, where it gets a sample with a number beyond those that there are.
+    Within {
+        /// Greatest distance along the tree (µm).
+        distance: f64,
+    },
+    /// Takes away twigs that are shorter than a length (µm): what lies between an end and the fork, or the soma,
+    /// before it. Once: a twig that comes to be by it stays, as by navis' `prune_twigs`. A piece without a
+    /// soma and without a fork is no twig.
+    Prune {
+        /// Length from which on twigs stay (µm); the way from a soma to its neurite does not count.
+        length: f64,
     },
     /// Smooths the noise away, as [`smoothing`](crate::smoothing) explains. Roots, forks, ends and changes of
     /// type stay.
@@ -161,6 +186,10 @@ impl Edit {
             Self::Reroot { .. } => "reroot",
             Self::Join { .. } => "join",
             Self::Subtree { .. } => "subtree",
+            Self::Cut { .. } => "cut",
+            Self::DropTypes(_) => "drop_types",
+            Self::Within { .. } => "within",
+            Self::Prune { .. } => "prune",
             Self::Smooth(_) => "smooth",
             Self::Resample { .. } => "resample",
             Self::Simplify { .. } => "simplify",
@@ -186,6 +215,36 @@ pub enum EditError {
         least: i64,
         /// The greatest.
         most: i64,
+    },
+    /// No samples have the numbers.
+    #[error(
+        "no samples have the numbers {}: the numbers are from {least} to {most}",
+        list(samples)
+    )]
+    NoSamples {
+        /// The numbers, two or more.
+        samples: Vec<i64>,
+        /// The least number that a sample has; 0 without samples.
+        least: i64,
+        /// The greatest.
+        most: i64,
+    },
+    /// A part of a soma is to go, but not all of it.
+    #[error(
+        "sample {sample} is a part of the soma, which is cut only as a whole: give {first}, its first sample, \
+         to take the soma away with all that hangs on it"
+    )]
+    PartOfSoma {
+        /// The number of the sample.
+        sample: i64,
+        /// The number of the soma's first sample.
+        first: i64,
+    },
+    /// Nothing would be left.
+    #[error("{} leaves nothing of the tracing: keep at least one sample", edit.replace('_', "-"))]
+    NothingLeft {
+        /// [`Edit::name`].
+        edit: &'static str,
     },
     /// Several samples have the number.
     #[error(
@@ -249,6 +308,11 @@ pub enum EditError {
     Build(#[from] BuildError),
 }
 
+fn list(numbers: &[i64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(i64::to_string).collect();
+    numbers.join(", ")
+}
+
 /// What [`apply`] gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edited {
@@ -271,6 +335,9 @@ pub fn apply(morphology: &Morphology, edits: &[Edit]) -> Result<Edited, EditErro
         let before = &edited.morphology;
         let nodes = Nodes::of(before);
         let edits = apply_one(before, &nodes, edit)?;
+        if edits.nodes.is_empty() && !nodes.nodes.is_empty() {
+            return Err(EditError::NothingLeft { edit: edit.name() });
+        }
         let after = nodes.rebuilt(before, &edits)?;
         let report = EditReport::new(edit.name(), before, &nodes, &after, &edits);
         edited.reports.push(report);
@@ -287,6 +354,10 @@ fn apply_one(morphology: &Morphology, nodes: &Nodes, edit: &Edit) -> Result<Edit
         Edit::Reroot { sample } => root::reroot(nodes, sample),
         Edit::Join { distance } => join::join(morphology, nodes, distance),
         Edit::Subtree { sample } => root::subtree(nodes, sample),
+        Edit::Cut { ref samples } => cut::cut(morphology, nodes, samples),
+        Edit::DropTypes(ref types) => Ok(cut::drop_types(nodes, types)),
+        Edit::Within { distance } => within::within(morphology, nodes, distance),
+        Edit::Prune { length } => cut::prune(nodes, length),
         Edit::Smooth(length) => smooth::smooth(morphology, nodes, length),
         Edit::Resample { spacing } => resample::resample(morphology, nodes, spacing),
         Edit::Simplify { tolerance } => simplify::simplify(morphology, nodes, tolerance),

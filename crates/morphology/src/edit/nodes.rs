@@ -1,5 +1,7 @@
 //! A tracing taken apart into the nodes that a file would have, and put together again.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
 use super::EditError;
@@ -23,6 +25,8 @@ pub(super) struct Edits {
     pub(super) spines: Option<Vec<DVec3>>,
     /// How far the tracing has moved (µm), where its nodes do not tell because others have taken their places.
     pub(super) largest_move: Option<f64>,
+    /// So many of the nodes are new; counted only by edits that also take some away.
+    pub(super) came: usize,
     /// Samples or pieces that the edit could not mend.
     pub(super) left: usize,
     /// Whether samples get new numbers.
@@ -36,6 +40,7 @@ impl Edits {
             nodes,
             spines: None,
             largest_move: None,
+            came: 0,
             left: 0,
             renumbered: false,
         }
@@ -132,14 +137,52 @@ impl Nodes {
             (Some(node), None) => Ok(node),
             (Some(_), Some(_)) => Err(EditError::RepeatedSample { sample }),
             (None, _) => {
-                let ids = || self.nodes.iter().map(|node| node.id);
+                let (least, most) = self.numbers();
                 Err(EditError::NoSample {
                     sample,
-                    least: ids().min().unwrap_or(0),
-                    most: ids().max().unwrap_or(0),
+                    least,
+                    most,
                 })
             }
         }
+    }
+
+    /// The nodes with these numbers; an error names all numbers that no node has.
+    pub(super) fn find_all(&self, samples: &[i64]) -> Result<Vec<usize>, EditError> {
+        let known: HashSet<i64> = self.nodes.iter().map(|node| node.id).collect();
+        let unknown = samples.iter().copied().filter(|n| !known.contains(n));
+        let unknown: Vec<i64> = unknown.collect();
+        if unknown.len() > 1 {
+            let (least, most) = self.numbers();
+            return Err(EditError::NoSamples {
+                samples: unknown,
+                least,
+                most,
+            });
+        }
+        samples.iter().map(|&sample| self.find(sample)).collect()
+    }
+
+    /// The least and the greatest number of a sample; 0 without samples.
+    fn numbers(&self) -> (i64, i64) {
+        let ids = || self.nodes.iter().map(|node| node.id);
+        (ids().min().unwrap_or(0), ids().max().unwrap_or(0))
+    }
+
+    /// The nodes that are kept. One whose parent is not kept becomes a root.
+    pub(super) fn remaining(&self, kept: &[bool]) -> Vec<Node> {
+        let mut number = vec![0_u32; kept.len()];
+        let mut remaining: Vec<Node> = Vec::new();
+        for (i, node) in self.nodes.iter().enumerate().filter(|&(i, _)| kept[i]) {
+            number[i] = remaining.len() as u32;
+            remaining.push(*node);
+        }
+        // Not in the same pass: samples of a soma may stand before their parents.
+        for node in &mut remaining {
+            let kept_parent = node.parent.filter(|&p| kept[p as usize]);
+            node.parent = kept_parent.map(|p| number[p as usize]);
+        }
+        remaining
     }
 
     /// Number of the tree of each node, from 0 on in the order of the roots, and how many trees there are.

@@ -57,7 +57,8 @@ impl EditReport {
             Change::default()
         };
         let rebuilt = Nodes::of(after);
-        let went_and_came = nodes.nodes.len().abs_diff(edits.nodes.len());
+        let stayed = edits.nodes.len() - edits.came;
+        let went_and_came = nodes.nodes.len().abs_diff(stayed) + edits.came;
         let all_new = nodes.nodes.len() + edits.nodes.len() - 2 * nodes.somata;
         Self {
             edit,

@@ -28,27 +28,14 @@ pub(super) fn hang_up(nodes: &mut [Node], root: usize) {
 pub(super) fn subtree(nodes: &Nodes, sample: i64) -> Result<Edits, EditError> {
     let top = nodes.find(sample)?;
     let kept = below(nodes, top);
-    let mut number = vec![0_u32; kept.len()];
-    let mut edited: Vec<Node> = Vec::new();
-    for (i, node) in nodes.nodes.iter().enumerate().filter(|&(i, _)| kept[i]) {
-        number[i] = edited.len() as u32;
-        edited.push(*node);
-    }
-    for node in &mut edited {
-        let kept_parent = node.parent.filter(|&p| kept[p as usize]);
-        node.parent = kept_parent.map(|p| number[p as usize]);
-    }
-    if let Some(top) = edited.get_mut(number[top] as usize) {
-        top.parent = None;
-    }
     Ok(Edits {
         largest_move: Some(0.0),
-        ..Edits::in_place(edited)
+        ..Edits::in_place(nodes.remaining(&kept))
     })
 }
 
 /// Which nodes hang on one, itself among them.
-fn below(nodes: &Nodes, top: usize) -> Vec<bool> {
+pub(super) fn below(nodes: &Nodes, top: usize) -> Vec<bool> {
     #[derive(Clone, Copy, PartialEq)]
     enum Known {
         Not,

@@ -87,7 +87,7 @@ impl Location {
     }
 
     /// Position relative to the morphology's origin.
-    pub(super) fn center(self, morphology: &Morphology) -> DVec3 {
+    pub(crate) fn center(self, morphology: &Morphology) -> DVec3 {
         let of = |point: u32| morphology.points[point as usize].position.as_dvec3();
         match self {
             Self::Soma(soma) => morphology.somata[soma as usize].center.as_dvec3(),

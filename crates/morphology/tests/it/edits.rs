@@ -29,7 +29,7 @@ fn built(rows: &[Row]) -> Morphology {
 }
 
 /// Trees of all kinds, with and without somata, in several pieces.
-fn any_tracing() -> impl Strategy<Value = Morphology> {
+pub(crate) fn any_tracing() -> impl Strategy<Value = Morphology> {
     let coordinate = -200.0..200.0_f64;
     let back = prop_oneof![8 => Just(1_u32), 4 => 1..9_u32, 1 => Just(0)];
     let kind = prop_oneof![1 => Just(1), 9 => 2..5_i32];
@@ -64,6 +64,8 @@ fn every_edit(morphology: &Morphology) -> Vec<Edit> {
         },
         Edit::Join { distance: 50.0 },
         Edit::Subtree { sample },
+        Edit::Within { distance: 120.0 },
+        Edit::Prune { length: 60.0 },
         Edit::Smooth(SmoothingLength::Auto),
         Edit::Smooth(SmoothingLength::Length(40.0)),
         Edit::Resample { spacing: 30.0 },
@@ -82,7 +84,7 @@ fn every_edit(morphology: &Morphology) -> Vec<Edit> {
 }
 
 /// What every tracing is: see the crate's page.
-fn assert_valid(m: &Morphology) {
+pub(crate) fn assert_valid(m: &Morphology) {
     assert_eq!(m.points.len(), m.sample_ids.len());
     let mut next = 0;
     for (i, section) in m.sections.iter().enumerate() {
@@ -125,7 +127,7 @@ fn assert_near(a: &Morphology, b: &Morphology, tolerance: f32) {
 }
 
 /// Links between samples by their numbers, whichever of the two is the parent.
-fn links(m: &Morphology) -> BTreeSet<(i64, i64)> {
+pub(crate) fn links(m: &Morphology) -> BTreeSet<(i64, i64)> {
     let mut links = BTreeSet::new();
     for section in &m.sections {
         let mut before = match section.attachment {
@@ -144,7 +146,7 @@ fn links(m: &Morphology) -> BTreeSet<(i64, i64)> {
     links
 }
 
-fn length(m: &Morphology) -> f64 {
+pub(crate) fn length(m: &Morphology) -> f64 {
     Measures::of(m).length
 }
 

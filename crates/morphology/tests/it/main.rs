@@ -1,5 +1,6 @@
 //! Morphologies: edits, differences, spines.
 
+mod cuts;
 mod differences;
 mod edits;
 mod spines;

@@ -41,6 +41,20 @@ pub(crate) struct EditArgs {
     /// Keep this sample and what hangs on it, and nothing else
     #[arg(long, value_name = "SAMPLE", allow_negative_numbers = true)]
     subtree: Option<i64>,
+    /// Drop this sample and what hangs on it; may be repeated
+    #[arg(long, value_name = "SAMPLE", allow_negative_numbers = true)]
+    cut: Vec<i64>,
+    /// Drop the samples of these types, named as in --types; what hung on them is a piece of its own then
+    #[arg(long, value_name = "TYPE,…", value_delimiter = ',', value_parser = types)]
+    drop_types: Vec<Types>,
+    /// Drop what is farther along the tree than DISTANCE (µm) from the soma's center, or without a soma from the
+    /// root; neurites are cut at it
+    #[arg(long, value_name = "DISTANCE", value_parser = positive, allow_negative_numbers = true)]
+    within: Option<f64>,
+    /// Drop twigs, from an end up to the fork or soma before it, that are shorter than LENGTH (µm): once, so
+    /// what becomes a twig by it stays
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
+    prune: Option<f64>,
     /// Smooth noise that is shorter than LENGTH (µm) away, or than 1.5 median radii of each section (auto)
     #[arg(long, value_name = "LENGTH", value_parser = smoothing, allow_negative_numbers = true)]
     smooth: Option<SmoothingLength>,
@@ -103,6 +117,16 @@ impl EditArgs {
         edits.extend(reroot.map(|&sample| Edit::Reroot { sample }));
         edits.extend(self.join.map(|distance| Edit::Join { distance }));
         edits.extend(self.subtree.map(|sample| Edit::Subtree { sample }));
+        if !self.cut.is_empty() {
+            let samples = self.cut.clone();
+            edits.push(Edit::Cut { samples });
+        }
+        if !self.drop_types.is_empty() {
+            let types = self.drop_types.iter().flat_map(|types| &types.0);
+            edits.push(Edit::DropTypes(types.copied().collect()));
+        }
+        edits.extend(self.within.map(|distance| Edit::Within { distance }));
+        edits.extend(self.prune.map(|length| Edit::Prune { length }));
         edits.extend(self.smooth.map(Edit::Smooth));
         edits.extend(self.resample.map(|spacing| Edit::Resample { spacing }));
         edits.extend(self.simplify.map(|tolerance| Edit::Simplify { tolerance }));
@@ -129,10 +153,7 @@ impl EditArgs {
 }
 
 fn renamed(text: &str) -> Result<Renamed, String> {
-    let of = |word: &str| match word.trim().to_ascii_lowercase().as_str() {
-        "soma" => Ok(vec![NeuriteKind::SOMA]),
-        other => other.parse::<Types>().map(|types| types.0),
-    };
+    let of = |word: &str| types(word).map(|types| types.0);
     let needed = "FROM=TO is needed, as in 5=2 or undefined=basal";
     let (from, to) = text.split_once('=').ok_or(needed)?;
     match of(to)?[..] {
@@ -141,6 +162,14 @@ fn renamed(text: &str) -> Result<Renamed, String> {
             to,
         }),
         _ => Err("a single type must stand after =: basal or apical instead of dendrite".into()),
+    }
+}
+
+/// Types that a word names, the soma's among them.
+fn types(word: &str) -> Result<Types, String> {
+    match word.trim().to_ascii_lowercase().as_str() {
+        "soma" => Ok(Types(vec![NeuriteKind::SOMA])),
+        other => other.parse(),
     }
 }
 
@@ -212,6 +241,10 @@ mod tests {
         assert_eq!((one.from, one.to), (vec![NeuriteKind(0)], basal));
         assert_eq!(renamed("dendrite=7").expect("types").from.len(), 2);
         assert_eq!(renamed("0=soma").expect("types").to, NeuriteKind::SOMA);
+        assert_eq!(
+            types(" Soma").map(|types| types.0),
+            Ok(vec![NeuriteKind::SOMA])
+        );
         for wrong in ["3", "3=", "=3", "branch=2", "2=dendrite"] {
             assert!(renamed(wrong).is_err(), "{wrong}");
         }
@@ -243,7 +276,8 @@ mod tests {
         let helped: Vec<String> = arguments
             .filter(|name| !["help", "units"].contains(&name.as_str()))
             .collect();
-        let all = "x --mirror x --rotate z=1 --recenter --spines 1 --simplify 1 --resample 1 --smooth auto --subtree 1 \
+        let all = "x --mirror x --rotate z=1 --recenter --spines 1 --simplify 1 --resample 1 --smooth auto --prune 1 --within 1 \
+                   --drop-types 7 --cut 1 --subtree 1 \
                    --join 1 --reroot 1 --mend-radii --scale 2 --types 1=2";
         let all: All = clap::Parser::parse_from(all.split_whitespace());
         let spines = Edit::Spines {

@@ -212,6 +212,58 @@ fn what_cannot_be_edited_fails_alone_and_leaves_no_file() {
 }
 
 #[neurotess_testing::test]
+fn branches_types_far_parts_and_twigs_are_cut_off() {
+    let work = Work::new();
+    // An axon of 40 µm with a twig of 3 µm at its middle, and two dendrites.
+    work.file(
+        "cell.swc",
+        "1 1 0 0 0 5 -1\n2 2 10 0 0 1 1\n3 2 30 0 0 1 2\n4 2 50 0 0 3 3\n5 2 30 3 0 1 3\n\
+         6 3 -10 0 0 1 1\n7 3 -20 0 0 1 6\n8 4 0 10 0 1 1\n9 4 0 30 0 1 8\n",
+    );
+    let left = |options: &str| {
+        work.run(&format!("convert cell.swc -o out.swc --force {options}"))
+            .exits(0);
+        let text = work.text("out.swc");
+        let rows = text.lines().filter(|line| !line.starts_with('#'));
+        let number = |line: &str| line.split(' ').next().and_then(|n| n.parse().ok());
+        let numbers: Vec<i64> = rows.filter_map(number).collect();
+        (numbers, text)
+    };
+    assert_eq!(left("--cut 3 --cut 9 --cut 4").0, [1, 2, 6, 7, 8]);
+    assert_eq!(left("--drop-types axon,4").0, [1, 6, 7]);
+    assert_eq!(left("--drop-types dendrite").0, [1, 2, 3, 4, 5]);
+    assert_eq!(left("--prune 3.1").0, [1, 2, 3, 4, 6, 7, 8, 9]);
+    let (numbers, text) = left("--within 40 --drop-types 3,4 --prune 4");
+    assert_eq!(numbers, [1, 2, 3, 6]);
+    assert_eq!(row(&text, 6), [6.0, 2.0, 40.0, 0.0, 0.0, 2.0, 3.0]);
+    let told = work
+        .run("convert cell.swc --dry-run --prune 3.1 --drop-types axon")
+        .exits(0)
+        .stdout();
+    assert!(
+        told.contains("drop-types 4 samples changed") && told.contains("prune      0 samples"),
+        "{told}"
+    );
+    for (options, error) in [
+        (
+            "--cut 3 --cut 77 --cut 88",
+            "no samples have the numbers 77, 88",
+        ),
+        ("--cut 1", "cut leaves nothing of the tracing"),
+        (
+            "--drop-types soma,dendrite,axon",
+            "drop-types leaves nothing of the tracing",
+        ),
+    ] {
+        let run = work
+            .run(&format!("convert cell.swc -o none.swc {options}"))
+            .exits(1);
+        assert!(run.stderr().contains(error), "{}", run.stderr());
+    }
+    assert!(!work.path("none.swc").exists());
+}
+
+#[neurotess_testing::test]
 fn wrong_values_are_wrong_usage() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -230,6 +282,10 @@ fn wrong_values_are_wrong_usage() {
         "--smooth 0",
         "--join -3",
         "--reroot a",
+        "--cut a",
+        "--drop-types branch",
+        "--within 0",
+        "--prune -1",
         "--mend-radii=1",
     ] {
         let run = work
