@@ -164,7 +164,7 @@ def test_arrays_are_read_only_and_outlive_the_mesh(cell: nt.Morphology) -> None:
 
 
 def test_every_format_is_written_and_read_back(mesh: nt.Mesh, tmp_path: Path) -> None:
-    for extension in ("ply", "obj", "stl", "glb", "off", "vtu", "msh", "poly", "smesh"):
+    for extension in ("ply", "obj", "stl", "glb", "off", "vtu", "msh", "msh2", "poly", "smesh"):
         path = tmp_path / f"mesh.{extension}"
         mesh.save(path)
         again = nt.read_mesh(path)

@@ -21,6 +21,8 @@ pub enum Format {
     Vtu,
     /// Gmsh 4.1, binary; triangles with a surface for each section and a physical group for each type.
     Msh,
+    /// Gmsh 2.2, text, which STEPS and older programs read; with the same surfaces and groups.
+    Msh2,
     /// TetGen's piecewise linear complex, text; triangles with their type as facet marker.
     Poly,
     /// TetGen's simple form of it, with a line for each facet.
@@ -29,12 +31,12 @@ pub enum Format {
 
 /// No format has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown mesh format '{0}': use ply, obj, stl, glb, off, vtu, msh, poly or smesh")]
+#[error("unknown mesh format '{0}': use ply, obj, stl, glb, off, vtu, msh, msh2, poly or smesh")]
 pub struct UnknownFormat(pub String);
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Ply,
         Self::Obj,
         Self::Stl,
@@ -42,12 +44,13 @@ impl Format {
         Self::Off,
         Self::Vtu,
         Self::Msh,
+        Self::Msh2,
         Self::Poly,
         Self::Smesh,
     ];
 
-    /// The extension of files, without a dot.
-    pub fn extension(self) -> &'static str {
+    /// The name that options and messages give it.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Ply => "ply",
             Self::Obj => "obj",
@@ -56,12 +59,22 @@ impl Format {
             Self::Off => "off",
             Self::Vtu => "vtu",
             Self::Msh => "msh",
+            Self::Msh2 => "msh2",
             Self::Poly => "poly",
             Self::Smesh => "smesh",
         }
     }
 
-    /// The format that a path's extension names, in either case; `gltf` is read as GLB.
+    /// The extension of files, without a dot: the name, but `msh` for both versions of it.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Msh2 => "msh",
+            other => other.name(),
+        }
+    }
+
+    /// The format that a path's extension names, in either case; `gltf` is read as GLB. `msh` is version 4.1 to write,
+    /// and whichever the file says to read.
     pub fn from_extension(path: &Path) -> Result<Self, UnknownFormat> {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         extension.parse()
@@ -69,7 +82,7 @@ impl Format {
 
     /// Whether files of this format tell what each face belongs to, so that mesh generators find walls in them.
     pub fn has_regions(self) -> bool {
-        matches!(self, Self::Msh | Self::Poly | Self::Smesh)
+        matches!(self, Self::Msh | Self::Msh2 | Self::Poly | Self::Smesh)
     }
 
     /// Whether files of this format can hold quads.
@@ -83,9 +96,7 @@ impl FromStr for Format {
 
     fn from_str(name: &str) -> Result<Self, UnknownFormat> {
         let lower = name.to_ascii_lowercase();
-        let found = Self::ALL
-            .into_iter()
-            .find(|format| format.extension() == lower);
+        let found = Self::ALL.into_iter().find(|format| format.name() == lower);
         let found = found.or((lower == "gltf").then_some(Self::Glb));
         found.ok_or_else(|| UnknownFormat(name.to_owned()))
     }
@@ -93,6 +104,6 @@ impl FromStr for Format {
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.extension())
+        f.write_str(self.name())
     }
 }

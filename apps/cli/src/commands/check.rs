@@ -24,7 +24,7 @@ pub(crate) struct CheckArgs {
     /// or globs; - for standard input, with --format
     #[arg(required = true, value_name = "MESH")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu, msh, poly, smesh
+    /// Format, whatever the names say: ply, obj, stl, glb, off, vtu, msh (4.1 and 2.2), poly, smesh
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
     /// Merge vertices of identical position first
@@ -42,7 +42,7 @@ struct Verdict {
 
 /// Runs the command.
 pub(crate) fn run(args: &CheckArgs, reporter: &Reporter) -> anyhow::Result<()> {
-    let mut extensions = Format::ALL.map(Format::extension).to_vec();
+    let mut extensions = Format::ALL.map(Format::name).to_vec();
     extensions.push("gltf");
     let inputs = Inputs::find(&args.inputs, &extensions);
     let verdicts = each(&inputs, reporter, |input| judge(input, args))?;
@@ -59,7 +59,7 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
     let read = match (is_standard(&input.path), args.format) {
         (true, None) => {
             let what = "standard input has no extension: say --format ply, obj, stl, glb, off, vtu, msh, \
-                 poly or smesh";
+                 msh2, poly or smesh";
             return Err(Failure(format!("{file}: {what}")));
         }
         (true, Some(format)) => {

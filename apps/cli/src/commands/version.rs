@@ -24,7 +24,7 @@ fn adapter() -> Result<String, String> {
 /// Prints the version; with -v also formats and features of this build.
 pub(crate) fn run(reporter: &Reporter) -> anyhow::Result<()> {
     let version = env!("CARGO_PKG_VERSION");
-    let meshes = Format::ALL.map(Format::extension);
+    let meshes = Format::ALL.map(Format::name);
     reporter.answer(&format!("neurotess {version}"));
     if reporter.verbose() {
         reporter.answer(&match adapter() {

@@ -178,8 +178,8 @@ class Mesh:
     ) -> None:
         """Writes a file, whole or not at all: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH.
 
-        The extension tells the format if `format` does not. With ``unit="m"`` coordinates and radii are in
-        meters.
+        The extension tells the format if `format` does not; ``format="msh2"`` is MSH 2.2, as STEPS wants it, in files
+        that end in ``.msh``. With ``unit="m"`` coordinates and radii are in meters.
         """
         self._surface.write(path, format, unit, overwrite)
 

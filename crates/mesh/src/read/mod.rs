@@ -9,6 +9,7 @@ mod builder;
 mod glb;
 mod lines;
 mod msh;
+mod msh2;
 mod numbers;
 mod obj;
 mod off;
@@ -140,7 +141,8 @@ pub fn read_bytes(bytes: &[u8], format: Format) -> Result<SurfaceMesh, ReadError
         Format::Glb => glb::read(bytes),
         Format::Off => off::read(bytes),
         Format::Vtu => vtu::read(bytes),
-        Format::Msh => msh::read(bytes),
+        // The file says which version it is of.
+        Format::Msh | Format::Msh2 => msh::read(bytes),
         Format::Poly => tetgen::read_poly(bytes),
         Format::Smesh => tetgen::read_smesh(bytes),
     }

@@ -1,4 +1,4 @@
-//! MSH, Gmsh's format, version 4.1, text and binary:
+//! MSH, Gmsh's format, version 4.1 and, in `msh2.rs`, 2.2, text and binary:
 //! <https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>.
 //!
 //! Triangles and quads of first order are read. Points and lines are skipped, and so are volumes: of a
@@ -18,6 +18,7 @@ use crate::{SurfaceMesh, type_of_region};
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
     let mut file = File {
         input: Numbers::of(bytes),
+        legacy: false,
         ours: false,
         codes: HashMap::new(),
         indices: HashMap::new(),
@@ -29,26 +30,28 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
     file.finish()
 }
 
-struct File<'a> {
-    input: Numbers<'a>,
+pub(super) struct File<'a> {
+    pub(super) input: Numbers<'a>,
+    /// Of version 2.
+    legacy: bool,
     /// Written by neurotess: entities are sections, physical groups are types.
-    ours: bool,
+    pub(super) ours: bool,
     /// Physical groups of surfaces, by the tag of the surface.
     codes: HashMap<i32, i32>,
     /// Indices of nodes by their tags.
     indices: HashMap<u64, u32>,
     positions: Vec<(FilePosition, DVec3)>,
-    faces: Vec<Face>,
+    pub(super) faces: Vec<Face>,
     /// There are volumes.
-    solid: bool,
+    pub(super) solid: bool,
 }
 
-struct Face {
-    at: FilePosition,
+pub(super) struct Face {
+    pub(super) at: FilePosition,
     /// Tags of nodes; three of a triangle.
-    corners: [u64; 4],
-    count: usize,
-    region: Option<Region>,
+    pub(super) corners: [u64; 4],
+    pub(super) count: usize,
+    pub(super) region: Option<Region>,
 }
 
 impl File<'_> {
@@ -58,6 +61,8 @@ impl File<'_> {
                 b"$MeshFormat" => self.format()?,
                 b"$Comments" => self.ours = self.input.rest_of_section().contains("neurotess"),
                 b"$Entities" => self.entities()?,
+                b"$Nodes" if self.legacy => self.nodes_2()?,
+                b"$Elements" if self.legacy => self.elements_2()?,
                 b"$Nodes" => self.nodes()?,
                 b"$Elements" => self.elements()?,
                 _ => {}
@@ -70,19 +75,20 @@ impl File<'_> {
     fn format(&mut self) -> Result<(), ReadError> {
         let at = self.input.place();
         let version = self.input.word()?;
-        if version != b"4.1" {
+        self.legacy = matches!(version, b"2" | b"2.0" | b"2.1" | b"2.2");
+        if version != b"4.1" && !self.legacy {
             let what = format!("MSH version {}", shown(version));
             return Err(ReadError::Unsupported {
                 at,
                 what,
-                remedy: "write version 4.1 (in Gmsh, -format msh41)",
+                remedy: "write version 4.1 or 2.2 (in Gmsh, -format msh41 or msh22)",
             });
         }
         let binary = self.input.word()?;
         let at = self.input.place();
         let width = self.input.word()?;
         if width != b"8" {
-            return Err(malformed(at, shown(width), "8, the bytes of an index"));
+            return Err(malformed(at, shown(width), "8, the bytes of a number"));
         }
         if binary == b"0" {
             return Ok(());
@@ -146,14 +152,24 @@ impl File<'_> {
                 for _ in 0..parameters {
                     self.input.real()?;
                 }
-                let index = self.positions.len() as u32;
-                if self.indices.insert(tag, index).is_some() {
-                    let found = format!("node {tag} a second time");
-                    return Err(malformed(at, found, "another tag for each node"));
-                }
-                self.positions.push((at, position));
+                self.node(at, tag, position)?;
             }
         }
+        Ok(())
+    }
+
+    pub(super) fn node(
+        &mut self,
+        at: FilePosition,
+        tag: u64,
+        position: DVec3,
+    ) -> Result<(), ReadError> {
+        let index = self.positions.len() as u32;
+        if self.indices.insert(tag, index).is_some() {
+            let found = format!("node {tag} a second time");
+            return Err(malformed(at, found, "another tag for each node"));
+        }
+        self.positions.push((at, position));
         Ok(())
     }
 
@@ -170,10 +186,7 @@ impl File<'_> {
             let nodes = nodes_of(kind, at)?;
             self.solid |= dimension == 3;
             let region = self.codes.get(&tag).filter(|_| self.ours);
-            let region = region.map(|&code| Region {
-                section: Some(tag.saturating_sub(1)),
-                kind: type_of_region(code),
-            });
+            let region = region.map(|&code| region_of(tag, code));
             for _ in 0..self.input.size()? {
                 let at = self.input.place();
                 self.input.size()?;
@@ -236,7 +249,15 @@ impl File<'_> {
     }
 }
 
-fn curved(at: FilePosition) -> ReadError {
+/// What a surface and its physical group say in files of our own.
+pub(super) fn region_of(surface: i32, code: i32) -> Region {
+    Region {
+        section: Some(surface.saturating_sub(1)),
+        kind: type_of_region(code),
+    }
+}
+
+pub(super) fn curved(at: FilePosition) -> ReadError {
     ReadError::Unsupported {
         at,
         what: "a face with nodes between its corners".into(),
@@ -245,7 +266,7 @@ fn curved(at: FilePosition) -> ReadError {
 }
 
 /// The number of nodes of a type of elements.
-fn nodes_of(kind: i32, at: FilePosition) -> Result<usize, ReadError> {
+pub(super) fn nodes_of(kind: i32, at: FilePosition) -> Result<usize, ReadError> {
     Ok(match kind {
         1 => 2,
         2 => 3,

@@ -10,6 +10,7 @@ pub(crate) mod corners;
 mod glb;
 mod in_order;
 mod msh;
+mod msh2;
 mod obj;
 mod off;
 mod ply;
@@ -86,6 +87,7 @@ pub enum WriteError {
 /// | OFF | text | shortest that reads back exactly | none | kept |
 /// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all | kept |
 /// | MSH | binary, little endian | f64 | type and section of each face | split |
+/// | MSH 2.2 | text | shortest that reads back exactly | type and section of each face | split |
 /// | POLY, SMESH | text | shortest that reads back exactly | type of each face | split |
 ///
 /// Writes are large, `out` needs no buffer. STL repeats positions for each face and so holds those
@@ -111,6 +113,7 @@ pub fn write<W: Write + Seek>(
         Format::Off => off::write(surface, &mut file),
         Format::Vtu => vtu::write(surface, &mut file),
         Format::Msh => msh::write(surface, &mut file),
+        Format::Msh2 => msh2::write(surface, &mut file),
         Format::Poly => tetgen::write_poly(surface, &mut file),
         Format::Smesh => tetgen::write_smesh(surface, &mut file),
     }?;

@@ -1,5 +1,5 @@
 //! MSH 4.1, binary: Gmsh's reference manual, "MSH file format":
-//! <https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>.
+//! <https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>. `msh2.rs` writes version 2.2 with the same tags.
 //!
 //! **What a face belongs to.** A section is a discrete surface (an entity of dimension 2) whose tag is
 //! the section plus one, so the soma's is 1. A type is a physical group whose tag is its code
@@ -32,21 +32,21 @@ const TRIANGLE: u64 = 32;
 const TRIANGLE_TYPE: i32 = 2;
 
 /// A section and a type: an entity. Surfaces of our own have one type in a section.
-type Label = (i32, i32);
+pub(super) type Label = (i32, i32);
 
 /// The triangles of an entity.
-struct Entity {
-    tag: i32,
-    count: u64,
+pub(super) struct Entity {
+    pub(super) tag: i32,
+    pub(super) count: u64,
     low: DVec3,
     high: DVec3,
 }
 
 /// What is known of the faces before they are written.
-struct Census {
-    entities: BTreeMap<Label, Entity>,
+pub(super) struct Census {
+    pub(super) entities: BTreeMap<Label, Entity>,
     /// Tags of the first triangle and of the first half of a quad of each group.
-    first: Vec<[u64; 2]>,
+    pub(super) first: Vec<[u64; 2]>,
 }
 
 pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
@@ -59,7 +59,10 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
 }
 
 impl Census {
-    fn take(surface: &dyn Surface, blocks: &VertexBlocks<'_>) -> Result<Self, WriteError> {
+    pub(super) fn take(
+        surface: &dyn Surface,
+        blocks: &VertexBlocks<'_>,
+    ) -> Result<Self, WriteError> {
         let (triangles, quads) = (surface.triangle_count(), surface.quad_count());
         let groups = groups(surface.face_blocks(), triangles + quads);
         let counted: Vec<_> = groups
@@ -90,7 +93,7 @@ impl Census {
     }
 
     /// Physical groups: a name by code.
-    fn names(&self) -> BTreeMap<i32, String> {
+    pub(super) fn names(&self) -> BTreeMap<i32, String> {
         let kinds = self.entities.keys().map(|&(_, kind)| kind);
         kinds
             .map(|kind| (region_code(kind), region_name(kind).into_owned()))
@@ -131,7 +134,7 @@ fn count(faces: &Faces, corners: &Corners, origin: DVec3) -> BTreeMap<Label, Ent
     entities
 }
 
-fn label(corners: &Corners, triangle: [u32; 3]) -> Label {
+pub(super) fn label(corners: &Corners, triangle: [u32; 3]) -> Label {
     let label = corners.label(triangle);
     (label.section, label.kind)
 }
@@ -259,18 +262,25 @@ fn write_elements(
     file.put(&mut at, b"\n$EndElements\n")
 }
 
-/// The elements of a group by entity; tags count from `first` on, for triangles and halves of quads.
+/// The elements of a group by entity.
 fn encode(faces: &Faces, corners: &Corners, first: [u64; 2]) -> BTreeMap<Label, Vec<u8>> {
     let mut encoded: BTreeMap<Label, Vec<u8>> = BTreeMap::new();
-    let split = faces.triangles.len();
-    for (n, triangle) in triangles(faces).enumerate() {
-        let tag = match n.checked_sub(split) {
-            None => first[0] + n as u64,
-            Some(half) => first[1] + half as u64,
-        };
+    for (tag, triangle) in tagged(faces, first) {
         let [a, b, c] = triangle.map(|corner| u64::from(corner) + 1);
         let bytes = encoded.entry(label(corners, triangle)).or_default();
         bytes.extend_from_slice(&record![32; tag, a, b, c]);
     }
     encoded
+}
+
+/// The triangles of a group with their tags; these count from `first` on, for triangles and halves of quads.
+pub(super) fn tagged(faces: &Faces, first: [u64; 2]) -> impl Iterator<Item = (u64, [u32; 3])> {
+    let split = faces.triangles.len();
+    triangles(faces).enumerate().map(move |(n, triangle)| {
+        let tag = match n.checked_sub(split) {
+            None => first[0] + n as u64,
+            Some(half) => first[1] + half as u64,
+        };
+        (tag, triangle)
+    })
 }

@@ -3,6 +3,7 @@
 mod fuzz;
 mod independent;
 mod intersect;
+mod legacy;
 mod readers;
 mod round_trip;
 mod scenes;

@@ -127,8 +127,8 @@ pub(crate) struct MeshArgs {
     /// Keep only these: axon, basal, apical, dendrite (both), undefined, custom_N, SWC numbers
     #[arg(long, value_delimiter = ',', value_name = "TYPE,…")]
     pub(crate) types: Vec<Types>,
-    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu, msh,
-    /// poly, smesh
+    /// Format, where OUT's extension does not tell: ply, obj, stl, glb, off, vtu, msh
+    /// (Gmsh 4.1), msh2 (2.2, in files that end in .msh), poly, smesh
     #[arg(long, value_name = "FORMAT", help_heading = "Output")]
     pub(crate) format: Option<Format>,
     /// Quads instead of triangles (ply, obj, off, vtu)
@@ -138,7 +138,7 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
           help_heading = "Output")]
     pub(crate) unit: UnitArg,
-    /// Walls inside, between the soma and each neurite, so that tetrahedra get regions (msh, poly, smesh)
+    /// Walls inside, between the soma and each neurite, so that tetrahedra get regions (msh, msh2, poly, smesh)
     #[arg(long, help_heading = "Output")]
     pub(crate) walls: bool,
     /// Also write a row for each triangle: its sample, section, place along the section and SWC type

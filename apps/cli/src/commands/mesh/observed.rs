@@ -58,7 +58,7 @@ impl<'a> Observed<'a> {
 /// How often a format has the blocks of vertices and of faces made, about.
 fn passes(format: Format) -> (usize, usize) {
     match format {
-        Format::Msh => (4, 2),
+        Format::Msh | Format::Msh2 => (4, 2),
         Format::Poly | Format::Smesh => (3, 1),
         _ => (1, 1),
     }

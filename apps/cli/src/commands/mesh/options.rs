@@ -105,7 +105,7 @@ impl MeshOptions {
         }
         if args.walls && !format.has_regions() {
             return usage(format!(
-                "{format} cannot tell walls from the membrane: leave out --walls, or write msh, poly or smesh"
+                "{format} cannot tell walls from the membrane: leave out --walls, or write msh, msh2, poly or smesh"
             ));
         }
         if args.table.is_some() && levels(args)? == MeshLevels::Coarse && format.has_quads() {
@@ -241,7 +241,7 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     if is_standard(out) && args.format.is_none() {
         return usage(
             "standard output has no extension: say --format ply, obj, stl, glb, off, vtu, msh, \
-             poly or smesh",
+             msh2, poly or smesh",
         );
     }
     match (args.format, from_name) {

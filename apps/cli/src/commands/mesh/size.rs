@@ -58,6 +58,7 @@ pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
         // Measured on a cell with a million faces.
         Format::Obj => [64, 48, 64],
         Format::Off => [30, 26, 34],
+        Format::Msh2 => [36, 34, 68],
         Format::Poly => [36, 30, 60],
         Format::Smesh => [36, 26, 52],
     };

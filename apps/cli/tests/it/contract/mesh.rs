@@ -64,13 +64,51 @@ fn report_has_the_keys_and_agrees_with_check() {
 
 #[neurotess_testing::test]
 fn every_format_is_written_and_closed() {
-    for format in Format::ALL.map(Format::extension) {
+    for format in Format::ALL.map(Format::name) {
         let (work, mesh) = meshed(&format!("-o cell.{format} --level 2"));
         let merge = if format == "stl" { "--merge" } else { "" };
         let check = checked(&work, &format!("cell.{format} {merge}"));
         assert_eq!(check["closed"], true, "{format}: {check}");
         assert_eq!(check["triangles"], mesh["triangles"], "{format}");
     }
+}
+
+#[neurotess_testing::test]
+fn msh2_is_written_into_files_that_end_in_msh() {
+    let (work, mesh) = meshed("-o cell.msh --format msh2 --level 1");
+    let text = fs::read_to_string(work.path("cell.msh")).expect("text");
+    assert!(
+        text.starts_with("$MeshFormat\n2.2 0 8\n"),
+        "{}",
+        &text[..40]
+    );
+    for part in ["2 1 \"soma\"\n", "$Nodes\n", "$EndElements\n"] {
+        assert!(text.contains(part), "{part}");
+    }
+    // The file says itself which version it is of.
+    let check = checked(&work, "cell.msh");
+    assert_eq!(
+        (&check["closed"], &check["triangles"]),
+        (&true.into(), &mesh["triangles"])
+    );
+    let run = work
+        .run("mesh cell.swc -o cell.msh --format msh2 --level 1 --force")
+        .exits(0);
+    assert!(
+        !run.stderr().contains("as --format says"),
+        "{}",
+        run.stderr()
+    );
+    fs::create_dir(work.path("in")).expect("a folder");
+    fs::copy(work.path("cell.swc"), work.path("in/a.swc")).expect("copied");
+    work.run("mesh in -o out --format msh2 --level 1").exits(0);
+    assert_eq!(
+        work.names("out")
+            .iter()
+            .filter(|name| *name == "a.msh")
+            .count(),
+        1
+    );
 }
 
 #[neurotess_testing::test]

@@ -67,7 +67,10 @@ fn what_cannot_have_walls_says_so() {
     let cell = sample("granule.swc");
     let run = |more: &str| neurotess(folder.path(), &format!("mesh {cell} --level 1 {more}"));
     let refused = run("--walls -o cell.ply").expect_err("PLY has no walls");
-    assert!(refused.contains("write msh, poly or smesh"), "{refused}");
+    assert!(
+        refused.contains("write msh, msh2, poly or smesh"),
+        "{refused}"
+    );
     let json = run("--walls -o cell.msh --soma none --json").expect("meshed");
     assert!(json.contains("no neurite leaves a soma"), "{json}");
     assert!(
