@@ -36,6 +36,17 @@ def test_navis(cell: nt.Morphology) -> None:
 
 
 @pytest.mark.full
+@pytest.mark.parametrize("length", [10, 30, 80])
+def test_twigs_are_those_of_navis(cell: nt.Morphology, length: float) -> None:
+    navis = pytest.importorskip("navis")
+    theirs = navis.prune_twigs(cell.to_navis(), length, inplace=False)
+    ours = nt.edit(cell, prune=length)
+    # navis also takes samples of a soma for twigs.
+    assert set(ours.samples.tolist()) == set(theirs.nodes.node_id) & set(cell.samples.tolist())
+    assert length < 80 or len(ours) < len(cell)
+
+
+@pytest.mark.full
 def test_units_of_navis_are_taken_into_account(cell: nt.Morphology) -> None:
     navis = pytest.importorskip("navis")
     neuron = cell.to_navis()
