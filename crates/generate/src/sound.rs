@@ -66,33 +66,39 @@ impl Reach {
 /// A ring whose normal is this far from the way to the next one bends the tube between them beyond both: cosine of 73°.
 const LEANING: f32 = 0.3;
 
+/// A tube whose rings differ more than this is as wide as the thicker one beside the thinner.
+const TAPERED: f32 = 2.0;
+
 /// Whether a tube's patch turns over, or a patch that may reach farther than its corners does.
 fn is_suspicious(mesh: &CoarseMesh, reach: &Reach, patch: usize) -> bool {
     let reaches_far = || {
-        let mut points = Vec::with_capacity(25);
-        patch_points(mesh, patch, 4, &RefineOptions::default(), &mut points);
+        let mut points = Vec::with_capacity(81);
+        patch_points(mesh, patch, 8, &RefineOptions::default(), &mut points);
         !points.into_iter().all(|point| reach.holds(point))
     };
     match mesh.patches[patch].kind {
-        PatchKind::Lateral => match least_cosine(mesh, &mesh.patches[patch]) {
-            cosine if cosine < 0.0 => true,
-            cosine if cosine < LEANING => reaches_far(),
-            _ => false,
-        },
+        PatchKind::Lateral => {
+            let (cosine, taper) = bend(mesh, &mesh.patches[patch]);
+            cosine < 0.0 || (cosine < LEANING || taper > TAPERED) && reaches_far()
+        }
         PatchKind::Loft => reaches_far(),
         PatchKind::Soma | PatchKind::Cap => false,
     }
 }
 
-/// Of the angles between the normals of a tube's two rings and the way from one to the other, the cosine of the greatest.
-fn least_cosine(mesh: &CoarseMesh, patch: &Patch) -> f32 {
+/// Of the angles between the normals of a tube's two rings and the way from one to the other, the cosine of the greatest;
+/// and how many times the thicker ring is as thick as the other.
+fn bend(mesh: &CoarseMesh, patch: &Patch) -> (f32, f32) {
     let point = |corner: u32| &mesh.tracing[mesh.vertices[corner as usize].tracing as usize];
     let (near, far) = (point(patch.corners[0]), point(patch.corners[3]));
     let way = (far.center - near.center).normalize_or_zero();
-    near.tangent
+    let cosine = near
+        .tangent
         .dot(far.tangent)
         .min(near.tangent.dot(way))
-        .min(far.tangent.dot(way))
+        .min(far.tangent.dot(way));
+    let (thin, thick) = (near.radius.min(far.radius), near.radius.max(far.radius));
+    (cosine, thick / thin)
 }
 
 /// Least volume of a piece, as a share of that of tubes with its area and radii: half of one times the other. A tube that
