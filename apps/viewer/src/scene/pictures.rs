@@ -21,6 +21,7 @@ use crate::io::save::existing;
 use crate::io::task::{Progress, caught};
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
+use crate::model::targets::film_files;
 use crate::scene::content;
 use crate::scene::film;
 use crate::scene::markers::settings;
@@ -35,17 +36,7 @@ pub(crate) fn pictures(
     options: &PictureFile,
     progress: &Progress,
 ) -> Result<Vec<PathBuf>, String> {
-    let stem = options
-        .out
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let file = |i: usize| match film_frames.len() {
-        1 => options.out.with_extension("png"),
-        _ => options.out.with_file_name(format!("{stem}_{i:04}.png")),
-    };
-    let files: Vec<PathBuf> = (0..film_frames.len()).map(file).collect();
+    let files = film_files(&options.out, film_frames.len());
     let existing = existing(options.replace);
     for file in &files {
         existing.check(file).map_err(|e| e.to_string())?;

@@ -11,6 +11,7 @@ use crate::io::paths::{self, Name, completed, goes_on, parted};
 use crate::model::command::{Command, Edit, FilePurpose, PlotOf};
 use crate::model::document::is_mesh;
 use crate::model::session;
+use crate::model::targets::{named, session_file};
 use crate::ui::path_line;
 
 /// State of the file dialog: the folder, and what is typed.
@@ -287,7 +288,13 @@ impl FilePanel {
                 is_folder: entry.is_folder,
             })
             .collect();
-        let line = path_line::line(&mut self.typed, hint, |typed| completed(typed, &names), ui);
+        let line = path_line::line(
+            &mut self.typed,
+            egui::Id::unique("files line"),
+            hint,
+            |typed| completed(typed, &names),
+            ui,
+        );
         if line.changed() && self.follow() {
             path_line::to_end(line.id, &self.typed, ui);
         }
@@ -331,32 +338,23 @@ impl FilePanel {
             FilePurpose::Points => Command::OpenPoints(paths.pop().unwrap_or_default()),
             FilePurpose::Meshes => Command::OpenMeshes(paths),
             FilePurpose::SaveSession => {
-                let path = paths.pop().unwrap_or_default();
-                let named = if session::is_session(&path) {
-                    path
-                } else {
-                    path.with_extension(session::EXTENSION)
-                };
+                let named = session_file(&paths.pop().unwrap_or_default());
                 Command::SaveSession(named)
             }
             FilePurpose::OpenPalette => Command::OpenPalette(paths.pop().unwrap_or_default()),
             FilePurpose::SavePalette => {
                 let path = paths.pop().unwrap_or_default();
-                Command::SavePalette(match path.extension() {
-                    Some(_) => path,
-                    None => path.with_extension("toml"),
-                })
+                Command::SavePalette(named(&path, "toml", |_| false))
             }
             FilePurpose::SavePlot(of, extension) => {
                 let path = paths.pop().unwrap_or_default();
-                let named = |known| {
+                let is = |known| {
                     path.extension()
                         .is_some_and(|e| e.eq_ignore_ascii_case(known))
                 };
-                let path = match named("svg") || named("csv") {
+                let path = match is("svg") || is("csv") {
                     true => path,
-                    // A dot may be part of the name: it is not replaced.
-                    false => PathBuf::from(format!("{}.{extension}", path.display())),
+                    false => named(&path, extension, |_| false),
                 };
                 Command::SavePlot(of, path)
             }

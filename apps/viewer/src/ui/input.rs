@@ -47,7 +47,7 @@ impl From<&Dialog> for Open {
 
 impl Open {
     /// Whether it must be answered before anything else.
-    fn is_modal(self) -> bool {
+    pub(crate) fn is_modal(self) -> bool {
         matches!(self, Self::Palette | Self::Question)
     }
 }

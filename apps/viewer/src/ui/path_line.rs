@@ -11,14 +11,17 @@ use crate::io::paths::{Name, completed, goes_on, parted, read, whole};
 /// Most names that a list below a line shows.
 const MOST: usize = 9;
 
-/// A line to type a path into; Tab completes it.
+/// A line to type a path into; Tab completes it. `id`: its own, since egui's follows from the place: the line
+/// would lose the keyboard in the middle of a word when what is above it changes.
 pub(crate) fn line(
     text: &mut String,
+    id: Id,
     hint: &str,
     complete: impl FnOnce(&str) -> Option<String>,
     ui: &mut Ui,
 ) -> Response {
     let line = TextEdit::singleline(text)
+        .id(id)
         .hint_text(hint)
         .desired_width(f32::INFINITY)
         .lock_focus(true);
@@ -45,12 +48,12 @@ pub(crate) fn to_end(id: Id, text: &str, ui: &Ui) {
 
 /// A line for a path with a list below it. Relative paths start from `folder`; the list has files
 /// with this extension.
-pub(crate) fn listing_line(text: &mut String, extension: &str, folder: &Path, ui: &mut Ui) {
-    let id = ui.next_auto_id().with("names");
+pub(crate) fn listing_line(text: &mut String, id: Id, extension: &str, folder: &Path, ui: &mut Ui) {
     let whole_folder = whole(Path::new(parted(text).0), folder);
-    let names = names_in(&whole_folder, extension, id, ui);
+    let names = names_in(&whole_folder, extension, id.with("names"), ui);
     let response = line(
         text,
+        id,
         "Path of the file",
         |typed| completed(typed, &names),
         ui,

@@ -3,6 +3,7 @@
 mod clamped;
 mod common;
 mod dropping;
+mod file_dialog;
 mod input;
 mod lists;
 mod measuring;

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 
 use glam::DAffine3;
 use neurotess::generate::Generated;
-use neurotess::mesh::{self, Format, Placed, Surface};
+use neurotess::mesh::{self, Placed, Surface};
 use neurotess::output::write_whole;
 use neurotess::refine::{
     Caps, CoarseSurface, Lod, LodCriterion, Path as Course, RefineOptions, Refinement,
@@ -17,6 +17,7 @@ use super::existing;
 use crate::io::task::Progress;
 use crate::model::document::Detail;
 use crate::model::save::{MeshLod, MeshOptions};
+use crate::model::targets::{mesh_file, mesh_folder};
 use crate::model::view::View;
 
 /// A cell to be written.
@@ -65,16 +66,13 @@ pub(crate) fn meshes(
 fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>, String> {
     let extension = options.format.extension();
     if let [_] = plans {
-        return Ok(vec![options.out.with_extension(extension)]);
+        return Ok(vec![mesh_file(&options.out, options.format)]);
     }
     if plans.is_empty() {
         return Err("nothing is selected: select neurons, or save all that show".into());
     }
     // If a file is named for several cells, its stem becomes the name of a folder.
-    let folder = match Format::from_extension(&options.out) {
-        Ok(_) => options.out.with_extension(""),
-        Err(_) => options.out.clone(),
-    };
+    let folder = mesh_folder(&options.out);
     let mut files: Vec<PathBuf> = Vec::new();
     for plan in plans {
         let stem: String = plan
@@ -173,6 +171,8 @@ fn mesh_lod(
 
 #[cfg(test)]
 mod tests {
+    use neurotess::mesh::Format;
+
     use super::*;
     use crate::io::load;
     use crate::model::document::SomaEdit;

@@ -9,6 +9,7 @@ use neurotess::output::Output;
 
 use super::existing;
 use crate::io::task::Progress;
+use crate::model::targets::video_file;
 
 /// Whether ffmpeg is installed.
 pub(crate) fn has_ffmpeg() -> bool {
@@ -24,7 +25,7 @@ pub(crate) fn has_ffmpeg() -> bool {
 pub(crate) fn video(first: &Path, replace: bool, progress: &Progress) -> Result<PathBuf, String> {
     let text = first.display().to_string();
     let pattern = text.replace("_0000.png", "_%04d.png");
-    let out = PathBuf::from(text.replace("_0000.png", ".mp4"));
+    let out = video_file(first);
     let kept = |e: String| format!("{e}; the pictures are there");
     let output = Output::create(&out, existing(replace)).map_err(|e| kept(e.to_string()))?;
     let mut ffmpeg = Program::new("ffmpeg")

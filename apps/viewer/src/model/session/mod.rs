@@ -20,10 +20,9 @@ use crate::model::split::Split;
 use crate::model::state::State;
 use crate::model::view::View;
 
+pub use crate::model::session_name::{EXTENSION, is_session};
 pub use entries::{CircuitEntry, FileEntry, NeuronEntry, NodeEntry};
 
-/// Extension of sessions.
-pub const EXTENSION: &str = "neurotess";
 /// Version of the file format.
 const VERSION: u32 = 1;
 
@@ -105,12 +104,6 @@ pub struct Session {
 
 fn is_default(markers: &MarkerOptions) -> bool {
     *markers == MarkerOptions::default()
-}
-
-/// Whether a file has the extension of sessions.
-pub fn is_session(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
 }
 
 impl Session {

@@ -1,7 +1,7 @@
 //! The list of neurons, and the tree of neurites and sections of the selected one.
 
 use eframe::egui::{
-    self, Align, Button, CollapsingHeader, Label, Layout, Rect, RichText, ScrollArea, Sense,
+    self, Align, Button, CollapsingHeader, Id, Label, Layout, Rect, RichText, ScrollArea, Sense,
     TextEdit, vec2,
 };
 use neurotess::morphology::{Attachment, Morphology, SectionId};
@@ -37,7 +37,9 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
         }
     });
     if neurons > FEW || !state.search.is_empty() {
-        let search = TextEdit::singleline(&mut state.search).hint_text("Filter by name");
+        let search = TextEdit::singleline(&mut state.search)
+            .id(Id::unique("filter"))
+            .hint_text("Filter by name");
         ui.add(search.desired_width(f32::INFINITY));
     }
     ui.separator();

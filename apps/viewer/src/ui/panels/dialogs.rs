@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
-use super::keys_text;
+use super::{keys_text, window};
 use crate::model::command::{Command, FilePurpose, Listed};
 use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
@@ -48,16 +48,8 @@ fn files(
             FilePanel::new(purpose, &state.settings.folder, session)
         });
     let mut open = true;
-    match shown.show(ctx, &mut open) {
-        Some(Command::SavePalette(path)) if path.exists() => {
-            let save = Command::SavePalette(path.clone());
-            return Dialog::Replace(path, Box::new(save));
-        }
-        Some(Command::SavePlot(of, path)) if path.exists() => {
-            let save = Command::SavePlot(of, path.clone());
-            return Dialog::Replace(path, Box::new(save));
-        }
-        command => state.requests.extend(command),
+    if let Some(command) = shown.show(ctx, &mut open) {
+        return state.request(command);
     }
     if !open {
         return Dialog::Nothing;
@@ -87,14 +79,6 @@ pub(super) fn hover(ctx: &Context) {
         egui::FontId::proportional(26.0),
         egui::Color32::WHITE,
     );
-}
-
-fn window<'a>(title: &'a str, ctx: &Context) -> egui::Window<'a> {
-    egui::Window::new(title)
-        .collapsible(false)
-        .resizable(false)
-        .pivot(Align2::CENTER_CENTER)
-        .default_pos(ctx.content_rect().center())
 }
 
 const MOUSE: [(&str, &str); 9] = [
@@ -224,6 +208,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
         .fixed_size([440.0, 330.0])
         .show(ctx, |ui| {
             let line = TextEdit::singleline(&mut text)
+                .id(egui::Id::unique("palette line"))
                 .hint_text("Find a command")
                 .desired_width(f32::INFINITY);
             let line = ui.add(line);

@@ -280,3 +280,12 @@ fn keys_text(ui: &egui::Ui, keys: &egui::KeyboardShortcut) -> String {
     let text = ui.ctx().format_shortcut(keys);
     text.replace(key.name(), key.symbol_or_name())
 }
+
+/// The window of a dialog.
+fn window<'a>(title: &'a str, ctx: &egui::Context) -> egui::Window<'a> {
+    egui::Window::new(title)
+        .collapsible(false)
+        .resizable(false)
+        .pivot(Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+}

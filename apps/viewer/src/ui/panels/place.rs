@@ -61,16 +61,18 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
 /// Fields for three numbers up to a greatest one. True if one is not edited any more.
 fn row(ui: &mut Ui, name: &str, says: &str, numbers: &mut DVec3, most: f64) -> bool {
     let mut ended = false;
-    ui.horizontal_wrapped(|ui| {
-        ui.label(name).tip(says);
-        for (number, axis) in numbers.as_mut().iter_mut().zip(["x", "y", "z"]) {
-            let response = field(ui, number, -most..=most, 2, |field| {
-                let field = field.prefix(format!("{axis} "));
-                field.speed(0.5).update_while_editing(false)
-            });
-            let response = response.tip(says);
-            ended |= response.drag_stopped() || response.lost_focus();
-        }
+    super::number::kept(ui, name, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(name).tip(says);
+            for (number, axis) in numbers.as_mut().iter_mut().zip(["x", "y", "z"]) {
+                let response = field(ui, number, -most..=most, 2, |field| {
+                    let field = field.prefix(format!("{axis} "));
+                    field.speed(0.5).update_while_editing(false)
+                });
+                let response = response.tip(says);
+                ended |= response.drag_stopped() || response.lost_focus();
+            }
+        });
     });
     ended
 }

@@ -1,21 +1,22 @@
 //! Saves meshes, pictures, films and sessions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use eframe::egui::{Button, ComboBox, RichText, Ui};
+use eframe::egui::{Button, ComboBox, Id, RichText, Ui};
 use neurotess::mesh::Format;
 use neurotess::refine::LodCriterion;
 use neurotess::render::LARGEST;
 
 use super::cells::count;
 use super::heading;
-use super::number::field;
+use super::number::{field, kept};
 use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
 use crate::model::command::{Command, FilePurpose};
 use crate::model::film::length;
 use crate::model::save::{FilmOptions, MeshLod, PictureFile};
 use crate::model::state::{Dialog, State};
+use crate::model::targets::mesh_file;
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
@@ -37,12 +38,11 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
     }
 }
 
-/// Asks before files are replaced.
-fn confirm(state: &mut State, out: PathBuf, exists: bool, command: Command, replacing: Command) {
-    if exists {
-        state.dialog = Dialog::Replace(out, Box::new(replacing));
-    } else {
-        state.requests.push(command);
+/// Requests a command that saves, or asks before it replaces files.
+fn save(state: &mut State, command: Command) {
+    let asks = state.request(command);
+    if !matches!(asks, Dialog::Nothing) {
+        state.dialog = asks;
     }
 }
 
@@ -57,8 +57,7 @@ const FORMATS: [Format; 6] = [
 
 fn meshes(state: &mut State, ui: &mut Ui) {
     heading(ui, "Meshes");
-    let shown = state.document.neurons.len() - state.document.neurons.hidden();
-    let selected = state.document.neurons.selected().len();
+    let [shown, selected] = [true, false].map(|all| state.mesh_count(all));
     let (form, folder) = (&mut state.save, &state.settings.folder);
     ui.horizontal_wrapped(|ui| {
         ui.radio_value(&mut form.mesh.all, true, format!("visible ({shown})"));
@@ -75,7 +74,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
                         .selectable_value(&mut form.mesh.format, format, format.extension())
                         .clicked()
                     {
-                        let path = PathBuf::from(&form.mesh_out).with_extension(format.extension());
+                        let path = mesh_file(Path::new(&form.mesh_out), format);
                         form.mesh_out = path.display().to_string();
                     }
                 }
@@ -83,7 +82,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
         let quads = form.mesh.format.has_quads();
         ui.add_enabled_ui(quads, |ui| ui.checkbox(&mut form.mesh.quads, "quads"));
     });
-    mesh_lod(&mut form.mesh.lod, ui);
+    kept(ui, "mesh lod", |ui| mesh_lod(&mut form.mesh.lod, ui));
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(&mut form.mesh.placed, "placed as shown").tip(
             "Positions as in the window (side by side, or in the circuit); otherwise the coordinates of each file",
@@ -92,7 +91,13 @@ fn meshes(state: &mut State, ui: &mut Ui) {
         ui.checkbox(&mut form.mesh.flat, "flat ends").tip("Neurites end in flat disks; otherwise in half spheres");
     });
     let extension = form.mesh.format.extension();
-    path_line::listing_line(&mut form.mesh_out, extension, folder, ui);
+    path_line::listing_line(
+        &mut form.mesh_out,
+        Id::unique("mesh path"),
+        extension,
+        folder,
+        ui,
+    );
     let number = if form.mesh.all { shown } else { selected };
     if number > 1 {
         ui.weak("Writes a folder of this name with a file for each neuron.");
@@ -102,21 +107,7 @@ fn meshes(state: &mut State, ui: &mut Ui) {
     if ui.add_enabled(ready, Button::new(title)).clicked() {
         let mut options = form.mesh.clone();
         options.out = PathBuf::from(form.mesh_out.trim());
-        options.replace = false;
-        let mut replacing = options.clone();
-        replacing.replace = true;
-        let out = match number {
-            1 => options.out.with_extension(options.format.extension()),
-            _ => options.out.with_extension(""),
-        };
-        let exists = out.exists();
-        confirm(
-            state,
-            out,
-            exists,
-            Command::SaveMeshes(options),
-            Command::SaveMeshes(replacing),
-        );
+        save(state, Command::SaveMeshes(options));
     }
 }
 
@@ -172,27 +163,21 @@ fn picture(state: &mut State, ui: &mut Ui) {
     heading(ui, "Picture");
     let (form, folder) = (&mut state.save, &state.settings.folder);
     size(&mut form.picture, ui);
-    path_line::listing_line(&mut form.picture_out, "png", folder, ui);
+    path_line::listing_line(
+        &mut form.picture_out,
+        Id::unique("picture path"),
+        "png",
+        folder,
+        ui,
+    );
     let ready = !form.picture_out.trim().is_empty();
     if ui.add_enabled(ready, Button::new("Save picture")).clicked() {
-        let out = PathBuf::from(form.picture_out.trim()).with_extension("png");
         let options = PictureFile {
-            out: out.clone(),
+            out: PathBuf::from(form.picture_out.trim()),
             replace: false,
             ..form.picture.clone()
         };
-        let replacing = PictureFile {
-            replace: true,
-            ..options.clone()
-        };
-        let exists = out.exists();
-        confirm(
-            state,
-            out,
-            exists,
-            Command::SavePicture(options),
-            Command::SavePicture(replacing),
-        );
+        save(state, Command::SavePicture(options));
     }
 }
 
@@ -289,34 +274,29 @@ fn film(state: &mut State, ui: &mut Ui) {
         ui.checkbox(&mut form.video, "also a video (MP4)")
             .on_disabled_hover_text("ffmpeg is not installed");
     });
-    path_line::listing_line(&mut form.film_out, "png", folder, ui);
+    path_line::listing_line(
+        &mut form.film_out,
+        Id::unique("film path"),
+        "png",
+        folder,
+        ui,
+    );
     ui.label(
         RichText::new("Size and samples as set for the picture above.")
             .weak()
             .small(),
     );
     if ui.button("Save film").clicked() {
-        let out = PathBuf::from(form.film_out.trim()).with_extension("png");
-        let stem = out
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let first = out.with_file_name(format!("{stem}_0000.png"));
-        let film = |replace| {
-            Command::SaveFilm(FilmOptions {
-                picture: PictureFile {
-                    out: out.clone(),
-                    replace,
-                    ..form.picture.clone()
-                },
-                frames: form.frames,
-                time: over_time.then_some(form.time),
-                video: form.video && ffmpeg,
-            })
+        let film = FilmOptions {
+            picture: PictureFile {
+                out: PathBuf::from(form.film_out.trim()),
+                replace: false,
+                ..form.picture.clone()
+            },
+            frames: form.frames,
+            time: over_time.then_some(form.time),
+            video: form.video && ffmpeg,
         };
-        let (command, replacing) = (film(false), film(true));
-        let exists = first.exists();
-        confirm(state, first, exists, command, replacing);
+        save(state, Command::SaveFilm(film));
     }
 }

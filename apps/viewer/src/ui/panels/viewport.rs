@@ -14,6 +14,7 @@ use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
 use crate::model::markers::MarkerRef;
 use crate::model::state::{Picked, State};
+use crate::ui::input::Open;
 
 /// Angle (radians) for each point that the mouse is dragged.
 const TURN: f64 = 0.008;
@@ -78,7 +79,9 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Before, pane: Pane, rect: Re
         steer(screen, &response, ui);
         point(screen, before, &response, points);
     }
-    if pane.is_commanded() && !ui.ctx().egui_wants_keyboard_input() {
+    // Keys are for a dialog that is open, even while none of its lines has the keyboard.
+    let asked = Open::from(&screen.state.dialog).is_modal();
+    if pane.is_commanded() && !asked && !ui.ctx().egui_wants_keyboard_input() {
         fly(screen, upwards(screen.state), ui);
     }
     let ctx = ui.ctx().clone();
