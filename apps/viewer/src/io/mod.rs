@@ -1,5 +1,6 @@
 //! Files, and the threads that read and write them.
 
+pub(crate) mod autosave;
 pub(crate) mod background;
 pub(crate) mod circuit_caches;
 pub(crate) mod find;

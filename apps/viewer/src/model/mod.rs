@@ -1,6 +1,7 @@
 //! What is open and how it is shown: values, and the commands that change them. No threads, no
 //! device, no widgets.
 
+pub mod changes;
 pub(crate) mod circuits;
 pub mod command;
 pub mod crossings;

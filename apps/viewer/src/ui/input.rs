@@ -40,7 +40,9 @@ impl From<&Dialog> for Open {
             Dialog::Nothing => Self::Nothing,
             Dialog::Keys | Dialog::Problems => Self::Sheet,
             Dialog::Palette(..) => Self::Palette,
-            Dialog::Files(_) | Dialog::Replace(..) => Self::Question,
+            Dialog::Files(_) | Dialog::Replace(..) | Dialog::Unsaved(_) | Dialog::Recover(_) => {
+                Self::Question
+            }
         }
     }
 }

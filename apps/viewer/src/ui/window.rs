@@ -14,8 +14,8 @@ use thiserror::Error;
 use crate::io::background::wait_for_background;
 use crate::model::command::{Command, Edit};
 use crate::model::document::{MarkerOptions, MeshEntry, SomaEdit};
-use crate::model::settings::Settings;
-use crate::ui::app::{CommandListener, Viewer, lost};
+use crate::model::settings::{self, Settings};
+use crate::ui::app::{CommandListener, EVERY, Viewer, lost};
 
 /// What the window starts with.
 #[derive(Clone, Debug, Default)]
@@ -176,6 +176,9 @@ impl Window {
         let (settings, said) = Settings::load();
         let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         let mut viewer = viewer.with_soma(options.soma);
+        if let Some(folder) = settings::folder() {
+            viewer = viewer.with_autosave(&folder, EVERY);
+        }
         viewer.stage.limit_memory(options.gpu_memory);
         if options.without_caches {
             viewer = viewer.without_caches();
@@ -221,6 +224,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
+        self.viewer.leave();
         self.viewer.remember();
     }
 }

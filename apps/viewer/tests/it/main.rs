@@ -17,6 +17,7 @@ mod saving;
 mod spines;
 mod static_mode;
 mod synapses;
+mod unsaved;
 mod window;
 
 neurotess_testing::main!(finally: common::wait_for_threads());

@@ -153,6 +153,21 @@ impl Edit {
         )
     }
 
+    /// Whether losing it would be a loss: not what selects, and not what only opens a file, as opening a tracing
+    /// does.
+    pub(crate) fn is_work(&self) -> bool {
+        !matches!(
+            self,
+            Self::Select(..)
+                | Self::SelectAll
+                | Self::SelectNone
+                | Self::SelectOthers
+                | Self::SetReport(_)
+                | Self::SetPoints(_)
+                | Self::AddMeshes(_)
+        )
+    }
+
     /// Changes the document.
     pub fn apply(self, document: &mut Document) {
         let neurons = &mut document.neurons;

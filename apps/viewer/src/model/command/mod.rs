@@ -104,8 +104,12 @@ pub enum Command {
     SavePlot(PlotOf, PathBuf),
     /// Cancels reading or saving.
     Cancel,
-    /// Quits the program.
+    /// Quits the program; asks before that if work would be lost.
     Quit,
+    /// Runs a command that asks about what is not saved, without the question.
+    Unasked(Box<Command>),
+    /// Opens what an earlier window had not saved, or removes it.
+    Recover(bool),
 
     /// Undoes the last edit.
     Undo,
@@ -214,6 +218,8 @@ impl fmt::Debug for Command {
             Self::Edit(edit) => edit.fmt(f),
             Self::AskFiles(value) => with("AskFiles", value),
             Self::Open(value) => with("Open", value),
+            Self::Unasked(value) => with("Unasked", value),
+            Self::Recover(value) => with("Recover", value),
             Self::OpenSample(value) => with("OpenSample", value),
             Self::SaveSession(value) => with("SaveSession", value),
             Self::OpenPoints(value) => with("OpenPoints", value),
@@ -283,9 +289,9 @@ impl From<Edit> for Command {
 }
 
 impl Command {
-    /// Whether it opens a line of text, which then gets all keys.
+    /// Whether it may open a dialog, which then gets all keys.
     pub(crate) fn moves_keyboard(&self) -> bool {
-        matches!(self, Self::AskFiles(_) | Self::TogglePalette)
+        matches!(self, Self::AskFiles(_) | Self::TogglePalette | Self::Quit)
     }
 }
 

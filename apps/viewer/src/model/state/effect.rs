@@ -1,6 +1,7 @@
 //! What the state asks of the program around it: dialogs, and effects of commands.
 
 use std::path::PathBuf;
+use std::time::SystemTime;
 
 use crate::model::command::{Command, FilePurpose};
 use crate::model::save::SaveRequest;
@@ -22,6 +23,10 @@ pub enum Dialog {
     Files(FilePurpose),
     /// Asks whether an existing file may be replaced; the command to run if so.
     Replace(PathBuf, Box<Command>),
+    /// Asks whether a command may end what is not saved; the command.
+    Unsaved(Box<Command>),
+    /// Offers what an earlier window had not saved, with the time when that was kept.
+    Recover(SystemTime),
 }
 
 /// What a command makes the program do outside the state.
@@ -47,6 +52,8 @@ pub enum Effect {
     FullScreen(bool),
     /// Put a text on the clipboard.
     Copy(String),
+    /// Open what an earlier window had not saved, or remove it.
+    Recover(bool),
     /// Quit.
     Quit,
 }

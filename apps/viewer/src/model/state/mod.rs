@@ -6,6 +6,7 @@ mod derived;
 mod dimension_table;
 mod dimensions;
 mod effect;
+mod leaving;
 mod markers;
 mod meshes;
 mod partners;
@@ -22,6 +23,7 @@ use std::sync::Arc;
 use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::render::{MarkerShape, Side};
 
+use crate::model::changes::Changes;
 use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, Tab, Toggles};
 use crate::model::crossings::CrossingList;
@@ -61,6 +63,10 @@ pub struct Problem {
 pub struct State {
     /// The document, which is saved and whose edits can be undone.
     pub document: Document,
+    /// Which edits the session's file has.
+    pub changes: Changes,
+    /// Whether files are being written.
+    pub writing: bool,
     /// Earlier and later documents.
     pub history: History,
     /// Open tracings.
@@ -155,6 +161,8 @@ impl State {
                 detail: settings.detail,
                 ..Document::default()
             },
+            changes: Changes::default(),
+            writing: false,
             history: History::default(),
             sources: Sources::default(),
             circuits: Circuits::default(),
@@ -236,30 +244,38 @@ impl State {
             Command::Edit(edit) => self.edit(edit),
             Command::Undo => {
                 self.status = match self.history.undo(&mut self.document) {
-                    Some(name) => format!("Undone: {}", name.to_lowercase()),
+                    Some(name) => {
+                        self.changes.note();
+                        format!("Undone: {}", name.to_lowercase())
+                    }
                     None => "Nothing to undo".into(),
                 };
                 self.forget_what_is_gone();
             }
             Command::Redo => {
                 self.status = match self.history.redo(&mut self.document) {
-                    Some(name) => format!("Redone: {}", name.to_lowercase()),
+                    Some(name) => {
+                        self.changes.note();
+                        format!("Redone: {}", name.to_lowercase())
+                    }
                     None => "Nothing to redo".into(),
                 };
                 self.forget_what_is_gone();
             }
             Command::AskFiles(purpose) => self.dialog = Dialog::Files(purpose),
-            Command::Open(paths) => {
-                self.settings.remember_files(&paths);
-                self.effects.push(Effect::Load(paths));
+            Command::Quit | Command::Open(_) if self.loses_work(&command) => {
+                self.dialog = Dialog::Unsaved(Box::new(command));
             }
+            Command::Unasked(command) => self.run_unasked(*command),
+            Command::Open(_) => self.run_unasked(command),
             Command::OpenSample(kind) => {
                 let sample = sources::sample(kind);
                 self.effects.push(Effect::Load(vec![sample]));
             }
             Command::Reload => self.effects.push(Effect::Reload),
             Command::Cancel => self.effects.push(Effect::Cancel),
-            Command::Quit => self.effects.push(Effect::Quit),
+            Command::Quit => self.run_unasked(command),
+            Command::Recover(open) => self.effects.push(Effect::Recover(open)),
             Command::Look(side) => {
                 self.effects.push(Effect::Go(self.fit(side)));
                 self.fitted = Some(side);
@@ -329,11 +345,13 @@ impl State {
             Command::CopyDimensions(which) => self.copy_dimensions(which),
             Command::AddKeyView => {
                 self.key_views.push(self.view);
+                self.changes.note();
                 self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
             }
             Command::DropKeyView(which) => {
                 if which < self.key_views.len() {
                     self.key_views.remove(which);
+                    self.changes.note();
                 }
             }
             Command::OpenPoints(path) => {
@@ -355,9 +373,13 @@ impl State {
         let before = self.document.clone();
         let (name, joins) = (edit.name(), edit.joins());
         let measures = matches!(edit, Edit::AddDimension(_));
+        let is_work = edit.is_work();
         edit.apply(&mut self.document);
         if self.document != before {
             self.history.keep(name, before, joins);
+            if is_work {
+                self.changes.note();
+            }
             self.remember();
             if measures {
                 self.end_measure();

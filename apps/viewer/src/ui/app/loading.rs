@@ -77,6 +77,7 @@ impl Viewer {
         let state = &mut self.state;
         let settings = std::mem::take(&mut state.settings);
         let (adapter, aspect) = (state.adapter.clone(), state.aspect);
+        let mut changes = state.changes;
         // What is being read belongs to circuits that are closed now.
         self.worker.stop_markers();
         self.worker.stop_mesh();
@@ -95,8 +96,13 @@ impl Viewer {
         state.split = session.split;
         state.key_views = session.key_view.clone();
         state.document.saved_views = session.saved_view.clone();
-        state.session = Some(file.to_path_buf());
+        changes.note_saved();
         self.motion.stop();
+        self.state.session = self.own_file(file);
+        if self.state.session.is_none() {
+            changes.note();
+        }
+        self.state.changes = changes;
     }
 
     pub(super) fn reload(&mut self) {

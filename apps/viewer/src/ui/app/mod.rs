@@ -1,5 +1,6 @@
 //! The window: state, workers and stage together.
 
+mod autosave;
 mod crossings;
 mod loading;
 mod messages;
@@ -22,12 +23,14 @@ use crate::model::crossings::{Crossing, CrossingKey};
 use crate::model::document::SomaEdit;
 use crate::model::revision::Revision;
 use crate::model::settings::Settings;
-use crate::model::state::{Effect, State};
+use crate::model::state::{Dialog, Effect, State};
 use crate::scene::stage::Stage;
 use crate::ui::file_panel::FilePanel;
 use crate::ui::input::Input;
 use crate::ui::motion::Motion;
 use crate::ui::panels::{self, Screen};
+use autosave::Autosave;
+pub(crate) use autosave::EVERY;
 use loading::Loading;
 use plots::PlotWork;
 
@@ -63,6 +66,8 @@ pub struct Viewer {
     without_caches: bool,
     /// When the recording's time was last advanced.
     ticked: Instant,
+    /// What is not saved, kept in a file.
+    autosave: Option<Autosave>,
     /// Folder that the session is saved in when the program must end.
     rescue: PathBuf,
     /// Revisions of neurons, edits of somata and meshes at which all meshes fitted their edits.
@@ -110,6 +115,7 @@ impl Viewer {
             soma: SomaEdit::default(),
             without_caches: false,
             ticked: Instant::now(),
+            autosave: None,
             rescue: crate::model::settings::folder().unwrap_or_default(),
             somata_checked: None,
             listener: None,
@@ -167,6 +173,8 @@ impl Viewer {
         for message in self.worker.messages() {
             self.take(message);
         }
+        self.state.writing = self.worker.is_saving();
+        self.ask_to_close(&ctx);
         self.take_drops(&ctx);
         self.shortcuts(&ctx);
         if self.motion.advance(&mut self.state) {
@@ -187,9 +195,23 @@ impl Viewer {
         self.update_plots();
         self.update_crossings();
         self.note_settings();
+        self.autosave(&ctx);
         self.end_input(&ctx);
         if self.quits {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    /// Runs *Quit* when the desktop asks the window to close, which may ask the user.
+    fn ask_to_close(&mut self, ctx: &egui::Context) {
+        let closes = ctx.input(|input| input.viewport().close_requested());
+        if !closes || self.quits {
+            return;
+        }
+        self.run(Command::Quit);
+        if matches!(self.state.dialog, Dialog::Unsaved(_)) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            ctx.request_repaint();
         }
     }
 
@@ -296,6 +318,7 @@ impl Viewer {
                 self.motion.project(&mut self.state, orthographic);
             }
             Effect::Quit => self.quits = true,
+            Effect::Recover(open) => self.recover(open),
             Effect::Copy(text) => self.copied = Some(text),
             Effect::FullScreen(on) => self.full_screen = Some(on),
             Effect::Save(request) => self.save(request),

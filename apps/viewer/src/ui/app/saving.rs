@@ -113,6 +113,7 @@ impl Viewer {
             Ok(()) => {
                 self.state.status = format!("Saved {}", path.display());
                 self.state.session = Some(path.to_path_buf());
+                self.state.changes.note_saved();
                 self.state.settings.remember_files(&[path.to_path_buf()]);
             }
             Err(why) => {

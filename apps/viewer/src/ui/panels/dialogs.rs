@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
 
-use super::{keys_text, window};
+use super::{keys_text, leaving, window};
 use crate::model::command::{Command, FilePurpose, Listed};
 use crate::model::state::{Dialog, State};
 use crate::ui::file_panel::FilePanel;
@@ -22,6 +22,8 @@ pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
         Dialog::Palette(text, chosen) => palette(state, text, chosen, ctx),
         Dialog::Files(purpose) => files(state, purpose, panel, ctx),
         Dialog::Replace(path, command) => replace(state, path, command, ctx),
+        Dialog::Unsaved(command) => leaving::unsaved(state, command, ctx),
+        Dialog::Recover(written) => leaving::recover(state, written, ctx),
     };
     let had = !matches!(stays, Dialog::Nothing);
     state.dialog = if escape { Dialog::Nothing } else { stays };

@@ -12,6 +12,7 @@ mod dimensions;
 mod empty;
 mod gizmo;
 mod inspect;
+mod leaving;
 mod look;
 mod markers;
 mod marks;

@@ -1,0 +1,98 @@
+//! Which edits are in a session's file, and which would be lost.
+
+/// Counts edits: those that were made, and those that were made when the session was saved last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    made: u64,
+    saved: u64,
+}
+
+impl Changes {
+    /// Notes an edit.
+    pub(crate) fn note(&mut self) {
+        self.made += 1;
+    }
+
+    /// Notes that the session has all edits.
+    pub(crate) fn note_saved(&mut self) {
+        self.saved = self.made;
+    }
+
+    /// Whether edits would be lost.
+    pub fn unsaved(&self) -> bool {
+        self.made != self.saved
+    }
+
+    /// Number of edits that were made: another one after each.
+    pub(crate) fn made(&self) -> u64 {
+        self.made
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::command::{Command, Edit, FilePurpose};
+    use crate::model::document::{Neuron, SourceId};
+    use crate::model::settings::Settings;
+    use crate::model::state::{Dialog, Effect, State};
+    use std::path::PathBuf;
+
+    fn state() -> State {
+        let mut state = State::new(Settings::default());
+        let neuron = Neuron::new(SourceId(0), "n".into());
+        state.document.neurons.push(neuron);
+        state
+    }
+
+    fn asks(state: &mut State, command: Command) -> bool {
+        state.dialog = Dialog::Nothing;
+        state.effects.clear();
+        state.run(command);
+        let asks = matches!(state.dialog, Dialog::Unsaved(_));
+        assert_eq!(asks, state.effects.is_empty());
+        asks
+    }
+
+    #[test]
+    fn what_is_only_opened_and_selected_is_left_without_a_question() {
+        let mut state = state();
+        state.run(Edit::Select(vec![0], false));
+        state.run(Edit::SetReport(Some("report.h5".into())));
+        state.run(Command::AskFiles(FilePurpose::Open));
+        assert!(!state.changes.unsaved() && !asks(&mut state, Command::Quit));
+        assert_eq!(state.effects, [Effect::Quit]);
+    }
+
+    #[test]
+    fn edits_are_left_after_a_question_until_they_are_saved() {
+        let mut state = state();
+        state.run(Edit::SetGrid(true));
+        assert!(asks(&mut state, Command::Quit));
+        let session = vec![PathBuf::from("other.neurotess")];
+        assert!(asks(&mut state, Command::Open(session.clone())));
+        // Tracings are added to what is there.
+        assert!(!asks(&mut state, Command::Open(vec!["cell.swc".into()])));
+        for (command, effect) in [
+            (Command::Quit, Effect::Quit),
+            (Command::Open(session.clone()), Effect::Load(session)),
+        ] {
+            state.effects.clear();
+            state.run(Command::Unasked(Box::new(command)));
+            assert_eq!(state.effects, [effect]);
+        }
+        state.changes.note_saved();
+        assert!(!asks(&mut state, Command::Quit));
+        state.run(Command::Undo);
+        assert!(
+            asks(&mut state, Command::Quit),
+            "the file has it the other way"
+        );
+    }
+
+    #[test]
+    fn what_is_being_written_is_left_after_a_question() {
+        let mut state = state();
+        state.writing = true;
+        assert!(asks(&mut state, Command::Quit));
+    }
+}

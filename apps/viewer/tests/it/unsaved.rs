@@ -1,0 +1,110 @@
+//! What is not saved is neither lost by a key nor by a crash.
+
+use std::path::Path;
+use std::time::Duration;
+
+use eframe::egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use egui_kittest::kittest::Queryable;
+use neurotess::synth::Kind;
+use neurotess_viewer::Command;
+use neurotess_viewer::command::Edit;
+use neurotess_viewer::state::Dialog;
+
+use crate::common::{Window, gpu, run, settle, state, viewer, window, with_samples};
+
+/// What the last frame asked the desktop for.
+fn asked(window: &Window) -> Vec<ViewportCommand> {
+    let viewports = window.output().viewport_output.values();
+    viewports.flat_map(|v| v.commands.clone()).collect()
+}
+
+fn root_events(window: &mut Window) -> &mut Vec<ViewportEvent> {
+    let root = window.input_mut().viewports.entry(ViewportId::ROOT);
+    &mut root.or_default().events
+}
+
+fn presses_ctrl_q(window: &mut Window) {
+    for pressed in [true, false] {
+        window.event(Event::Key {
+            key: Key::Q,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::COMMAND,
+        });
+    }
+    window.step();
+}
+
+/// A window that keeps what is not saved in a folder.
+fn keeping(window: &mut Window, folder: &Path, every: Duration) {
+    let slot = window.state_mut();
+    *slot = slot
+        .take()
+        .map(|viewer| viewer.with_autosave(folder, every));
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn closing_asks_while_there_are_unsaved_edits() {
+    let mut window = window();
+    window.step();
+    run(&mut window, Edit::SetGrid(true));
+    presses_ctrl_q(&mut window);
+    assert!(!asked(&window).contains(&ViewportCommand::Close));
+    assert!(matches!(state(&mut window).dialog, Dialog::Unsaved(_)));
+    window.run_steps(8);
+    window.get_by_label("Cancel").click();
+    window.run_steps(3);
+    assert!(matches!(state(&mut window).dialog, Dialog::Nothing));
+    // The window's button.
+    root_events(&mut window).push(ViewportEvent::Close);
+    window.step();
+    assert!(asked(&window).contains(&ViewportCommand::CancelClose));
+    root_events(&mut window).clear();
+    window.run_steps(8);
+    window.get_by_label("Quit without saving").click();
+    let closes = (0..4).any(|_| {
+        window.step();
+        asked(&window).contains(&ViewportCommand::Close)
+    });
+    assert!(closes);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn a_saved_session_closes_at_once() {
+    let mut window = window();
+    window.step();
+    run(&mut window, Edit::SetGrid(true));
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("s.neurotess");
+    run(&mut window, Command::SaveSession(file));
+    presses_ctrl_q(&mut window);
+    assert!(asked(&window).contains(&ViewportCommand::Close));
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn edits_are_kept_and_offered_by_the_next_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kept = folder.path().join("unsaved-0.neurotess");
+    let mut first = with_samples(&[Kind::Star]);
+    keeping(&mut first, folder.path(), Duration::ZERO);
+    first.step();
+    assert!(!kept.exists(), "nothing was edited yet");
+    run(&mut first, Edit::SetGrid(true));
+    assert!(kept.exists());
+    // It ends without asking.
+    drop(first);
+    let mut next = window();
+    next.step();
+    keeping(&mut next, folder.path(), Duration::ZERO);
+    next.run_steps(8);
+    assert!(matches!(state(&mut next).dialog, Dialog::Recover(_)));
+    next.get_by_label("Open it").click();
+    next.run_steps(3);
+    settle(&mut next);
+    assert!(state(&mut next).document.grid && state(&mut next).document.neurons.len() == 1);
+    assert!(state(&mut next).session.is_none() && state(&mut next).changes.unsaved());
+    // Left by its user, it leaves nothing.
+    viewer(&mut next).leave();
+    assert!(!kept.exists());
+}
