@@ -7,6 +7,7 @@ mod file_dialog;
 mod input;
 mod lists;
 mod measuring;
+mod menus;
 mod meshes;
 mod palettes;
 mod panels;

@@ -76,6 +76,7 @@ impl State {
                 title: format!("{} (saved view)", saved.name).into(),
                 keys: keys.get(index).and_then(|item| item.keys),
                 command: Command::GoSaved(index),
+                begins: index == 0,
             });
             items.splice(first..first, views);
         }

@@ -2,7 +2,7 @@
 
 use eframe::egui::Key;
 
-use super::{CTRL, CTRL_SHIFT, Listed, PLAIN, Toggles, choose, grow, item};
+use super::{CTRL, CTRL_SHIFT, Listed, PLAIN, Toggles, choose, first, grow, item};
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::SpinePlaces;
 
@@ -10,7 +10,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
     vec![
         item("Undo", Some((CTRL, Key::Z)), Command::Undo),
         item("Redo", Some((CTRL_SHIFT, Key::Z)), Command::Redo),
-        item("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
+        first("Select all", Some((CTRL, Key::A)), Edit::SelectAll.into()),
         item(
             "Select none",
             // While measuring or presenting, Escape leaves that.
@@ -31,7 +31,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::L)),
             Command::SetLasso(!now.lasso),
         ),
-        item(
+        first(
             choose(
                 now.placing,
                 "Move and turn selected (handles, gizmo, translate, rotate)",
@@ -55,12 +55,12 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             None,
             Command::PutBack,
         ),
-        item(
+        first(
             "Remove selected from the list",
             Some((PLAIN, Key::Delete)),
             Edit::Remove.into(),
         ),
-        item(
+        first(
             choose(
                 now.measuring,
                 "Measure: distance, path length, diameter, angle (ruler)",
@@ -75,7 +75,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Command::CopyDimensions(None),
         ),
         item("Remove all dimensions", None, Edit::ClearDimensions.into()),
-        item(
+        first(
             "Grow spines at random (1 for each µm of dendrites)",
             None,
             grow(SpinePlaces::Random),

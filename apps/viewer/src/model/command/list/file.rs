@@ -2,7 +2,7 @@
 
 use eframe::egui::Key;
 
-use super::{CTRL, CTRL_SHIFT, Listed, item};
+use super::{CTRL, CTRL_SHIFT, Listed, first, item};
 use crate::model::command::{Command, Edit, FilePurpose, PlotOf, Tab};
 
 pub(super) fn menu() -> Vec<Listed> {
@@ -12,13 +12,13 @@ pub(super) fn menu() -> Vec<Listed> {
             Some((CTRL, Key::O)),
             Command::AskFiles(FilePurpose::Open),
         ),
-        item(
+        first(
             "Open report or spikes…",
             Some((CTRL_SHIFT, Key::O)),
             Command::AskFiles(FilePurpose::Report),
         ),
         item("Close the report", None, Edit::SetReport(None).into()),
-        item(
+        first(
             "Open points (a table of markers)…",
             None,
             Command::AskFiles(FilePurpose::Points),
@@ -28,18 +28,18 @@ pub(super) fn menu() -> Vec<Listed> {
             None,
             Edit::SetPoints(None).into(),
         ),
-        item(
+        first(
             "Add a mesh (brain region, segment, pipette)…",
             None,
             Command::AskFiles(FilePurpose::Meshes),
         ),
         item("Remove all meshes", None, Edit::ClearMeshes.into()),
-        item(
+        first(
             "Save session…",
             Some((CTRL, Key::S)),
             Command::AskFiles(FilePurpose::SaveSession),
         ),
-        item(
+        first(
             "Open palette…",
             None,
             Command::AskFiles(FilePurpose::OpenPalette),
@@ -49,7 +49,7 @@ pub(super) fn menu() -> Vec<Listed> {
             None,
             Command::AskFiles(FilePurpose::SavePalette),
         ),
-        item(
+        first(
             "Save the plot of traces (SVG)…",
             None,
             Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, "svg")),
@@ -59,17 +59,17 @@ pub(super) fn menu() -> Vec<Listed> {
             None,
             Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, "csv")),
         ),
-        item(
+        first(
             "Save mesh, picture or film…",
             Some((CTRL, Key::E)),
             Command::Show(Tab::Save),
         ),
-        item(
+        first(
             "Reload changed files",
             Some((CTRL, Key::R)),
             Command::Reload,
         ),
         item("Stop reading or saving", None, Command::Cancel),
-        item("Quit", Some((CTRL, Key::Q)), Command::Quit),
+        first("Quit", Some((CTRL, Key::Q)), Command::Quit),
     ]
 }

@@ -22,6 +22,8 @@ pub struct Listed {
     pub keys: Option<KeyboardShortcut>,
     /// The command.
     pub command: Command,
+    /// Whether a group of the menu begins with it.
+    pub begins: bool,
 }
 
 const PLAIN: Modifiers = Modifiers::NONE;
@@ -50,6 +52,15 @@ fn item(title: &'static str, keys: Option<(Modifiers, Key)>, command: Command) -
         title: title.into(),
         keys: keys.map(|(modifiers, key)| KeyboardShortcut::new(modifiers, key)),
         command,
+        begins: false,
+    }
+}
+
+/// The first of a group of a menu.
+fn first(title: &'static str, keys: Option<(Modifiers, Key)>, command: Command) -> Listed {
+    Listed {
+        begins: true,
+        ..item(title, keys, command)
     }
 }
 

@@ -3,7 +3,7 @@
 use eframe::egui::Key;
 use neurotess::render::Side;
 
-use super::{CTRL, Listed, PLAIN, SAVED_VIEWS, Toggles, choose, item};
+use super::{CTRL, Listed, PLAIN, SAVED_VIEWS, Toggles, choose, first, item};
 use crate::model::command::{Command, Edit};
 
 pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
@@ -18,7 +18,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::F)),
             Command::Focus,
         ),
-        item(
+        first(
             "Front",
             Some((PLAIN, Key::Num1)),
             Command::Look(Side::Front),
@@ -41,7 +41,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::Num4)),
             Command::Look(Side::Iso),
         ),
-        item(
+        first(
             choose(
                 now.orthographic,
                 "Orthographic: parallel projection, true scale bar",
@@ -50,14 +50,14 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::O)),
             Command::SetOrthographic(!now.orthographic),
         ),
-        item("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
+        first("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
         item(
             "Isolate selected",
             Some((PLAIN, Key::I)),
             Edit::Isolate.into(),
         ),
         item("Show all", Some((CTRL, Key::H)), Edit::ShowAll.into()),
-        item(
+        first(
             choose(
                 now.clamped,
                 "Clamp selected: fine while moving (pin)",
@@ -67,7 +67,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Edit::Clamp(!now.clamped).into(),
         ),
         item("Unclamp all (unpin)", None, Edit::UnclampAll.into()),
-        item(
+        first(
             choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
             Some((PLAIN, Key::Y)),
             Command::SetYDown(!now.y_down),
@@ -86,7 +86,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((CTRL, Key::F)),
             Command::SetFrozen(!now.frozen),
         ),
-        item(
+        first(
             choose(
                 now.split,
                 "Two views side by side (split)",
@@ -104,7 +104,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((CTRL, Key::B)),
             Command::SetLinked(!now.linked),
         ),
-        item(
+        first(
             choose(
                 now.turning,
                 "Turntable: turn the scene slowly (spin)",
@@ -113,7 +113,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::R)),
             Command::SetTurning(!now.turning),
         ),
-        item(
+        first(
             choose(
                 now.synapses,
                 "Show synapses (contacts, edges; markers)",
@@ -131,7 +131,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             None,
             Edit::ShowContacts(!now.contacts).into(),
         ),
-        item(
+        first(
             choose(now.playing, "Play the report", "Stop the report"),
             Some((PLAIN, Key::Space)),
             Command::TogglePlay,
@@ -146,7 +146,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::Period)),
             Command::StepTime(1),
         ),
-        item(
+        first(
             choose(
                 now.traces,
                 "Plot values over time (traces, voltage, time course)",
@@ -164,7 +164,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             None,
             Command::ListCrossings(!now.crossings),
         ),
-        item(
+        first(
             "Keep this view for a film",
             Some((PLAIN, Key::K)),
             Command::AddKeyView,

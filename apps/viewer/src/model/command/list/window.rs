@@ -2,7 +2,7 @@
 
 use eframe::egui::Key;
 
-use super::{CTRL_SHIFT, Listed, PLAIN, Toggles, choose, item};
+use super::{CTRL_SHIFT, Listed, PLAIN, Toggles, choose, first, item};
 use crate::model::command::{Command, Tab};
 
 pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
@@ -23,7 +23,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((CTRL_SHIFT, Key::D)),
             Command::Show(Tab::Detail),
         ),
-        item(
+        first(
             choose(now.dark, "Dark theme", "Light theme"),
             None,
             Command::SetDark(!now.dark),
@@ -37,7 +37,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             None,
             Command::SetCaches(!now.caches),
         ),
-        item(
+        first(
             choose(now.full_screen, "Full screen", "Leave the full screen"),
             Some((PLAIN, Key::F11)),
             Command::SetFullScreen(!now.full_screen),
@@ -56,7 +56,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((PLAIN, Key::Tab)),
             Command::TogglePanels,
         ),
-        item("What went wrong", None, Command::ToggleProblems),
+        first("What went wrong", None, Command::ToggleProblems),
     ]
     .into_iter()
     .chain(now.presenting.then(|| {
