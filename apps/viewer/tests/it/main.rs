@@ -4,6 +4,7 @@ mod clamped;
 mod common;
 mod dropping;
 mod file_dialog;
+mod focusing;
 mod input;
 mod lists;
 mod measuring;

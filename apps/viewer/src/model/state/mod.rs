@@ -10,6 +10,7 @@ mod leaving;
 mod markers;
 mod meshes;
 mod partners;
+mod parts;
 mod picked;
 mod placing;
 mod plots;

@@ -2,7 +2,7 @@
 
 use neurotess::render::Side;
 
-use super::{Effect, State};
+use super::{CellPart, Effect, State};
 use crate::model::command::{Command, Edit, Listed, listed};
 use crate::model::document::SavedView;
 use crate::model::sources::extent;
@@ -31,8 +31,17 @@ impl State {
         })
     }
 
-    /// Looks at the selection, or at everything if nothing is selected.
+    /// Looks at the selection, or at everything if nothing is selected. A soma that was clicked is what is selected
+    /// of its cell; a click on a neurite selects the whole cell.
     pub(super) fn focus(&mut self) {
+        let soma = self.picked.filter(|picked| {
+            let only = self.document.neurons.selected() == [picked.neuron];
+            only && picked.part == CellPart::Soma
+        });
+        if let Some(sphere) = soma.and_then(|soma| self.part_sphere(soma)) {
+            self.run(Command::Go(self.view.focused(sphere)));
+            return;
+        }
         let any = self.document.selected().next().is_some();
         let spheres = self.outline(|n| n.selected || !any);
         let (low, high) = extent(&spheres);

@@ -260,6 +260,9 @@ impl Leaf<'_> {
         if response.hovered() {
             *self.hovered = Some(picked);
         }
+        if response.double_clicked() {
+            go_to(self.state, picked);
+        }
         if response.clicked() {
             self.state.picked = Some(picked);
             self.state
@@ -311,8 +314,18 @@ fn neurite(
     if header.header_response.interact(Sense::hover()).hovered() {
         *leaf.hovered = Some(picked);
     }
+    if header.header_response.double_clicked() {
+        go_to(leaf.state, picked);
+    }
     if header.header_response.clicked() {
         leaf.state.picked = Some(picked);
+    }
+}
+
+/// Zooms to a part.
+fn go_to(state: &mut State, picked: Picked) {
+    if let Some(sphere) = state.part_sphere(picked) {
+        state.requests.push(Command::Go(state.view.focused(sphere)));
     }
 }
 
