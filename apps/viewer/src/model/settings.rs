@@ -9,7 +9,7 @@ use directories::ProjectDirs;
 use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 
-use crate::model::document::{ColorBy, Detail, Look};
+use crate::model::document::{Detail, Look};
 
 /// Most files in the recent list.
 const RECENT: usize = 12;
@@ -25,8 +25,6 @@ pub const FOLDER_VARIABLE: &str = "NEUROTESS_CONFIG";
 pub struct Settings {
     /// Whether the theme is dark.
     pub dark: bool,
-    /// Whether y points down.
-    pub y_down: bool,
     /// Whether a drag that selects draws a lasso instead of a rectangle.
     pub lasso: bool,
     /// Folder of the last file.
@@ -39,9 +37,9 @@ pub struct Settings {
     pub zoom: f32,
     /// Whether circuits have a cache.
     pub caches: bool,
-    /// Colors and light.
+    /// Colors and light, as far as they are taste.
     pub look: Look,
-    /// The level of detail.
+    /// The level of detail, without what hides anything.
     pub detail: Detail,
 }
 
@@ -49,7 +47,6 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             dark: true,
-            y_down: false,
             lasso: false,
             folder: std::env::current_dir().unwrap_or_default(),
             recent: Vec::new(),
@@ -74,14 +71,9 @@ impl Settings {
         };
         match toml::from_str::<Self>(&text) {
             Ok(mut settings) => {
-                // A cut that was made for another scene might hide half of this one.
-                settings.look.cut = None;
-                settings.look.ghost_others = false;
-                // Nor do colors that were chosen for another circuit fit.
-                settings.look.range = None;
-                if !settings.look.color_by.is_of_tracings() {
-                    settings.look.color_by = ColorBy::default();
-                }
+                // Earlier versions kept all.
+                settings.look = settings.look.taste();
+                settings.detail = settings.detail.taste();
                 (settings, None)
             }
             Err(e) => (

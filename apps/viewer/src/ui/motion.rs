@@ -86,7 +86,7 @@ impl Motion {
 
     /// Turns the scene by what the turntable turns in this time (s).
     pub(crate) fn turn(&mut self, state: &mut State, time: f64) {
-        let upwards = match state.settings.y_down {
+        let upwards = match state.document.y_down {
             true => DVec3::NEG_Y,
             false => DVec3::Y,
         };

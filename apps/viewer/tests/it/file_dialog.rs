@@ -63,7 +63,7 @@ fn a_path_is_typed_to_its_end_whatever_the_list_shows() {
     assert_eq!(state(&mut window).view, before, "no letter flew the camera");
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn no_key_reaches_the_scene_while_a_dialog_is_open() {
     let mut window = with_samples(&[Kind::Star]);
     let before = (state(&mut window).view, state(&mut window).document.clone());

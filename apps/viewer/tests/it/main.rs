@@ -10,6 +10,7 @@ mod lists;
 mod measuring;
 mod menus;
 mod meshes;
+mod next_cell;
 mod palettes;
 mod panels;
 mod plots;

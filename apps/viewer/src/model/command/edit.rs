@@ -52,6 +52,10 @@ pub enum Edit {
     GrowSpines(Option<SpineEdit>),
     /// Changes colors and light.
     SetLook(Box<Look>),
+    /// Shows everything as it is: undoes what *Look* and *Detail* hide and enlarge. Taste stays.
+    ResetLook,
+    /// Sets whether y points down.
+    SetYDown(bool),
     /// Changes the level of detail.
     SetDetail(Detail),
     /// Places neurons side by side, or where they were traced.
@@ -115,6 +119,8 @@ impl Edit {
             Self::SetSpines(_, Some(_)) | Self::GrowSpines(Some(_)) => "Spines",
             Self::SetSpines(_, None) | Self::GrowSpines(None) => "Remove spines",
             Self::SetLook(_) => "Look",
+            Self::ResetLook => "Reset look",
+            Self::SetYDown(_) => "Direction of y",
             Self::SetDetail(_) => "Detail",
             Self::SetGrid(_) => "Grid",
             Self::SetReport(_) => "Report",
@@ -245,6 +251,16 @@ impl Edit {
                 document.set_spines(&sources, spines);
             }
             Self::SetLook(look) => document.look = *look,
+            Self::ResetLook => {
+                let look = std::mem::take(&mut document.look);
+                document.look = Look {
+                    color_by: look.color_by,
+                    attribute: look.attribute.clone(),
+                    ..look.taste()
+                };
+                document.detail = document.detail.taste();
+            }
+            Self::SetYDown(y_down) => document.y_down = y_down,
             Self::SetDetail(detail) => document.detail = detail,
             Self::SetGrid(grid) => document.grid = grid,
             Self::SetReport(report) => document.set_report(report),

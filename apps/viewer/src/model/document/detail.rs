@@ -66,6 +66,14 @@ impl Default for Detail {
 }
 
 impl Detail {
+    /// What is taste in it: not what leaves small parts out.
+    pub(crate) fn taste(&self) -> Self {
+        Self {
+            smallest: Self::default().smallest,
+            ..*self
+        }
+    }
+
     pub(crate) fn lod(&self) -> LodCriterion {
         match self.criterion {
             LodKind::Error => LodCriterion::PixelError(self.error.max(0.01)),

@@ -235,6 +235,40 @@ impl Look {
         }
     }
 
+    /// What is taste in it, and survives into the next cell: palette, color map, background, light, legend. What
+    /// changes what is seen belongs to the document: there a cell must not be taken for another one, or for thicker
+    /// or less than it is. Nor do colors that were chosen for one circuit fit another.
+    pub(crate) fn taste(&self) -> Self {
+        let usual = Self::default();
+        Self {
+            color_by: match self.color_by.is_of_tracings() {
+                true => self.color_by,
+                false => usual.color_by,
+            },
+            attribute: usual.attribute,
+            range: usual.range,
+            wireframe: usual.wireframe,
+            ghost_others: usual.ghost_others,
+            least_width: usual.least_width,
+            radius_factor: usual.radius_factor,
+            parts: usual.parts,
+            cut: usual.cut,
+            ..self.clone()
+        }
+    }
+
+    /// What a glance at the picture does not tell, and would take for the cell's own, in words.
+    pub(crate) fn falsifies(&self) -> Vec<String> {
+        let factor = self.radius_factor();
+        let radii = (factor != 1.0).then(|| format!("radii × {}", (10.0 * factor).round() / 10.0));
+        let parts = match self.parts {
+            VisibleParts::All => None,
+            VisibleParts::Soma => Some("somata only".to_owned()),
+            VisibleParts::Neurites => Some("neurites only".to_owned()),
+        };
+        radii.into_iter().chain(parts).collect()
+    }
+
     /// Color of a type of SWC.
     pub(crate) fn type_color(&self, kind: i32) -> Rgb {
         let own = self.own_colors.types.get(&kind).copied();
@@ -280,6 +314,34 @@ mod tests {
         assert!(look.wireframe && look.highlight_selected && look.ghost_others);
         assert_eq!(look.ghost_opacity, 0.5);
         assert!(look.own_colors.is_empty());
+    }
+
+    #[test]
+    fn what_changes_what_is_seen_is_no_taste() {
+        let look = Look {
+            background: [1, 2, 3],
+            legend: false,
+            color_by: ColorBy::Value,
+            range: Some([1.0, 2.0]),
+            ghost_others: true,
+            least_width: 2.0,
+            radius_factor: 100.0,
+            parts: VisibleParts::Neurites,
+            cut: Some(Cut {
+                axis: 1,
+                place: 0.5,
+                flipped: true,
+            }),
+            ..Look::default()
+        };
+        assert_eq!(look.falsifies(), ["radii × 100", "neurites only"]);
+        let taste = Look {
+            background: [1, 2, 3],
+            legend: false,
+            ..Look::default()
+        };
+        assert_eq!(look.taste(), taste);
+        assert!(taste.falsifies().is_empty());
     }
 
     #[test]

@@ -45,6 +45,8 @@ pub struct Document {
     pub detail: Detail,
     /// Whether neurons are side by side instead of where they were traced.
     pub grid: bool,
+    /// Whether y points down.
+    pub y_down: bool,
     /// The recording whose values can be shown.
     pub report: Option<PathBuf>,
     /// Synapses and points beside the cells.

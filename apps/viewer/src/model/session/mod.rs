@@ -153,7 +153,7 @@ impl Session {
         Self {
             version: VERSION,
             grid: document.grid,
-            y_down: state.settings.y_down,
+            y_down: document.y_down,
             view: state.view,
             split: state.split.map(Split::kept),
             look: document.look.clone(),

@@ -213,7 +213,7 @@ impl State {
     pub fn toggles(&self) -> Toggles {
         Toggles {
             orthographic: self.view.orthographic,
-            y_down: self.settings.y_down,
+            y_down: self.document.y_down,
             grid: self.document.grid,
             frozen: self.frozen.is_some(),
             caches: self.settings.caches,
@@ -244,6 +244,7 @@ impl State {
         match command {
             Command::Edit(edit) => self.edit(edit),
             Command::Undo => {
+                let y_down = self.document.y_down;
                 self.status = match self.history.undo(&mut self.document) {
                     Some(name) => {
                         self.changes.note();
@@ -252,8 +253,10 @@ impl State {
                     None => "Nothing to undo".into(),
                 };
                 self.forget_what_is_gone();
+                self.show_upright(y_down);
             }
             Command::Redo => {
+                let y_down = self.document.y_down;
                 self.status = match self.history.redo(&mut self.document) {
                     Some(name) => {
                         self.changes.note();
@@ -262,6 +265,7 @@ impl State {
                     None => "Nothing to redo".into(),
                 };
                 self.forget_what_is_gone();
+                self.show_upright(y_down);
             }
             Command::AskFiles(purpose) => self.dialog = Dialog::Files(purpose),
             Command::Quit | Command::Open(_) if self.loses_work(&command) => {
@@ -291,7 +295,7 @@ impl State {
             Command::GoSaved(index) => self.go_to_saved(index),
             Command::SetOrthographic(on) => self.effects.push(Effect::Project(on)),
             Command::SetYDown(y_down) => {
-                self.settings.y_down = y_down;
+                self.run(Edit::SetYDown(y_down));
                 self.run(Command::Home);
             }
             Command::SetLasso(lasso) => {
@@ -398,9 +402,23 @@ impl State {
         self.dialog = if same { Dialog::Nothing } else { dialog };
     }
 
+    /// Shows everything anew after an undo, if y points the other way.
+    fn show_upright(&mut self, before: bool) {
+        if self.document.y_down != before {
+            self.run(Command::Home);
+        }
+    }
+
+    /// Leaves taste only, for the next cell.
+    pub(crate) fn forget_look(&mut self) {
+        self.document.look = self.document.look.taste();
+        self.document.detail = self.document.detail.taste();
+        self.document.y_down = false;
+    }
+
     fn remember(&mut self) {
-        self.settings.look = self.document.look.clone();
-        self.settings.detail = self.document.detail;
+        self.settings.look = self.document.look.taste();
+        self.settings.detail = self.document.detail.taste();
     }
 
     fn forget_what_is_gone(&mut self) {

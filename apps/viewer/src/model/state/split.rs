@@ -19,7 +19,7 @@ impl State {
             return;
         }
         // From the side, so that both together show all of it.
-        let upwards = if self.settings.y_down {
+        let upwards = if self.document.y_down {
             DVec3::NEG_Y
         } else {
             DVec3::Y

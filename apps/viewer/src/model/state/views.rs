@@ -15,7 +15,7 @@ impl State {
         spheres.extend(self.sphere_of_points());
         spheres.extend(self.mesh_points(false));
         self.view
-            .fitted(side, self.settings.y_down, self.aspect, &spheres)
+            .fitted(side, self.document.y_down, self.aspect, &spheres)
     }
 
     /// Adapts the view to another aspect ratio, so that the same things stay in the picture.

@@ -58,10 +58,16 @@ impl Viewer {
                 loading.session = Some(Box::new(session));
                 request
             }
-            None => OpenRequest {
-                paths,
-                ..OpenRequest::default()
-            },
+            None => {
+                // The next cell, after others were removed.
+                if loading.first && self.state.sources.iter().next().is_some() {
+                    self.state.forget_look();
+                }
+                OpenRequest {
+                    paths,
+                    ..OpenRequest::default()
+                }
+            }
         };
         let request = OpenRequest {
             usual: std::mem::take(&mut self.soma),
@@ -84,7 +90,7 @@ impl Viewer {
         self.plots.cancel();
         *state = State::new(settings);
         (state.adapter, state.aspect) = (adapter, aspect);
-        state.settings.y_down = session.y_down;
+        state.document.y_down = session.y_down;
         state.document.look = session.look.clone();
         state.document.detail = session.detail;
         state.document.grid = session.grid;

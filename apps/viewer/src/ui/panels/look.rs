@@ -48,6 +48,11 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
         |slider| slider.logarithmic(true).text("radius factor"),
     )
     .tip("Neurites are drawn with their radii times this, for figures; meshes are saved as traced");
+    let tip =
+        "Show everything as it was traced: all parts, no cut, no factor; colors and light stay";
+    if ui.button("Reset look").tip(tip).clicked() {
+        state.requests.push(Edit::ResetLook.into());
+    }
     saved_views::show(state, ui);
     heading(ui, "Selection");
     ui.checkbox(&mut look.highlight_selected, "Color of its own");

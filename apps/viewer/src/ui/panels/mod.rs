@@ -3,6 +3,7 @@
 mod area;
 mod cell_tip;
 mod cells;
+mod chips;
 mod color_map;
 mod crossings;
 mod detail;

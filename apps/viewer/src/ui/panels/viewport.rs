@@ -7,8 +7,8 @@ use eframe::egui::{
 use glam::DVec3;
 
 use super::{
-    Screen, area, cell_tip, crossings, gizmo, marks, measuring, overlay, partners, plate, tip,
-    traces,
+    Screen, area, cell_tip, chips, crossings, gizmo, marks, measuring, overlay, partners, plate,
+    tip, traces,
 };
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
@@ -94,6 +94,9 @@ pub(super) fn show(screen: &mut Screen<'_>, before: Before, pane: Pane, rect: Re
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
     over(screen, pane, rect, ui);
+    if !matches!(pane, Pane::Right { .. }) {
+        chips::show(screen.state, rect, ui);
+    }
     area::show(
         screen.state,
         &response,
@@ -133,7 +136,7 @@ fn steer(screen: &mut Screen<'_>, response: &Response, ui: &Ui) {
 }
 
 fn upwards(state: &State) -> DVec3 {
-    match state.settings.y_down {
+    match state.document.y_down {
         true => DVec3::NEG_Y,
         false => DVec3::Y,
     }

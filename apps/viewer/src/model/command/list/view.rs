@@ -164,6 +164,11 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             None,
             Command::ListCrossings(!now.crossings),
         ),
+        item(
+            "Reset look: nothing hidden, scaled or cut",
+            None,
+            Edit::ResetLook.into(),
+        ),
         first(
             "Keep this view for a film",
             Some((PLAIN, Key::K)),
