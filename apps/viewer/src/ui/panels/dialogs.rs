@@ -60,29 +60,6 @@ fn files(
     Dialog::Files(purpose)
 }
 
-/// While files are dragged over the window: says what dropping them would do.
-pub(super) fn hover(ctx: &Context) {
-    let count = ctx.input(|input| input.raw.hovered_files.len());
-    if count == 0 {
-        return;
-    }
-    let rect = ctx.content_rect();
-    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
-    let painter = ctx.layer_painter(layer);
-    painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(150));
-    let text = match count {
-        1 => "Drop it to open it".to_owned(),
-        n => format!("Drop these {n} to open them"),
-    };
-    painter.text(
-        rect.center(),
-        Align2::CENTER_CENTER,
-        text,
-        egui::FontId::proportional(26.0),
-        egui::Color32::WHITE,
-    );
-}
-
 const MOUSE: [(&str, &str); 9] = [
     ("left drag", "rotate"),
     ("middle or right drag, Shift + left drag", "pan"),

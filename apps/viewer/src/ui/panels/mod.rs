@@ -12,6 +12,7 @@ mod dimension_list;
 mod dimensions;
 mod empty;
 mod gizmo;
+mod held;
 mod inspect;
 mod leaving;
 mod look;
@@ -135,7 +136,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
         }
     });
     dialogs::show(screen.state, screen.files, &ctx);
-    dialogs::hover(&ctx);
+    held::show(&ctx);
 }
 
 /// Says how a presentation ends while the mouse moves; hides the cursor while it rests.
