@@ -379,6 +379,7 @@ impl State {
         let (name, joins) = (edit.name(), edit.joins());
         let measures = matches!(edit, Edit::AddDimension(_));
         let is_work = edit.is_work();
+        let spreads = matches!(edit, Edit::SetGrid(_) | Edit::Duplicate(_));
         edit.apply(&mut self.document);
         if self.document != before {
             self.history.keep(name, before, joins);
@@ -388,6 +389,9 @@ impl State {
             self.remember();
             if measures {
                 self.end_measure();
+            }
+            if spreads {
+                self.show_all();
             }
         }
         self.forget_what_is_gone();

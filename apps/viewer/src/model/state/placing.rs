@@ -73,8 +73,10 @@ impl State {
 
     /// Shows or hides the handles.
     pub(super) fn set_placing(&mut self, on: bool) {
-        self.placing = on.then(Placing::default);
-        if on {
+        // Side by side it would do nothing.
+        let possible = on && !self.document.grid;
+        self.placing = possible.then(Placing::default);
+        if possible {
             self.measuring = None;
         }
         self.status = match (on, self.document.grid, self.document.neurons.selected()) {
@@ -121,6 +123,7 @@ impl State {
         let width = BESIDE * (high - low).x.max(0.0);
         self.run(Edit::Duplicate(DVec3::X * width));
         self.status = match count {
+            _ if self.document.grid => "Copied; G places cells as traced, then P moves them".into(),
             1 => "A copy is beside it: P moves and turns it".into(),
             n => format!("{n} copies are beside them: P moves and turns them"),
         };
@@ -237,6 +240,36 @@ mod tests {
         state.run(Edit::SelectNone);
         state.run(Command::Duplicate);
         assert_eq!(state.document.neurons.len(), 2);
+    }
+
+    #[test]
+    fn side_by_side_and_copies_are_in_the_picture() {
+        for fitted in [true, false] {
+            for command in [Command::Duplicate, Edit::SetGrid(true).into()] {
+                let mut state = state();
+                state.view = state.fit(neurotess::render::Side::Front);
+                state.fitted = fitted.then_some(neurotess::render::Side::Front);
+                state.run(command.clone());
+                let [Effect::Go(view)] = state.effects[..] else {
+                    panic!("{command:?} does not fit the camera");
+                };
+                let (low, high) = extent(&state.outline(|_| true));
+                let middle = (low + high) / 2.0;
+                let away = view.camera().target().distance(middle);
+                assert!(away < 0.1 * (high - low).length(), "{command:?}: {away}");
+                assert_eq!(state.fitted.is_some(), fitted);
+            }
+        }
+    }
+
+    #[test]
+    fn handles_are_refused_side_by_side_and_do_not_wait() {
+        let mut state = state();
+        state.run(Edit::SetGrid(true));
+        state.run(Command::SetPlacing(true));
+        assert!(state.placing.is_none() && state.status.contains("cannot be moved"));
+        state.run(Command::Duplicate);
+        assert!(!state.status.contains("P moves and"), "{}", state.status);
     }
 
     #[test]

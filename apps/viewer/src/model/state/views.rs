@@ -31,6 +31,20 @@ impl State {
         })
     }
 
+    /// Looks at everything, from where the camera is: cells are elsewhere now.
+    pub(super) fn show_all(&mut self) {
+        if let Some(side) = self.fitted {
+            self.effects.push(Effect::Go(self.fit(side)));
+            return;
+        }
+        let spheres = self.outline(|_| true);
+        if !spheres.is_empty() {
+            let (low, high) = extent(&spheres);
+            let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
+            self.effects.push(Effect::Go(self.view.focused(sphere)));
+        }
+    }
+
     /// Looks at the selection, or at everything if nothing is selected. A soma that was clicked is what is selected
     /// of its cell; a click on a neurite selects the whole cell.
     pub(super) fn focus(&mut self) {
