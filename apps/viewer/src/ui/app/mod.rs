@@ -34,6 +34,9 @@ pub(crate) use autosave::EVERY;
 use loading::Loading;
 use plots::PlotWork;
 
+/// Usual duration (s) of animations of controls, egui's own.
+const ANIMATION: f32 = 0.2;
+
 /// The whole program, without the desktop's window.
 pub struct Viewer {
     /// The state.
@@ -59,6 +62,8 @@ pub struct Viewer {
     /// Whether the window is to fill the screen, or to leave it.
     full_screen: Option<bool>,
     theme: Option<(bool, u32)>,
+    /// Whether frames are too slow for animations, once that is known.
+    slow: Option<bool>,
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
     soma: SomaEdit,
@@ -111,6 +116,7 @@ impl Viewer {
             copied: None,
             full_screen: None,
             theme: None,
+            slow: None,
             remembered: settings,
             soma: SomaEdit::default(),
             without_caches: false,
@@ -262,6 +268,15 @@ impl Viewer {
             panels::style(ctx, theme.0);
             ctx.set_zoom_factor(zoom);
             self.theme = Some(theme);
+            self.slow = None;
+        }
+        // Below 20 frames a second, a menu that fades in would take seconds.
+        let frame = ctx.input(|input| input.stable_dt);
+        let slow = frame > if self.slow == Some(true) { 0.04 } else { 0.05 };
+        if self.slow != Some(slow) {
+            let time = if slow { 0.0 } else { ANIMATION };
+            ctx.all_styles_mut(|style| style.animation_time = time);
+            self.slow = Some(slow);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Selects neurons by an area over the picture, drawn with Ctrl and the left button: a rectangle, or a lasso.
 
 use eframe::egui::{
-    Color32, CursorIcon, Key, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke,
+    Color32, CursorIcon, Event, Key, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke,
     StrokeKind, Ui,
 };
 
@@ -31,8 +31,18 @@ pub(super) fn drag(state: &mut State, response: &Response, ui: &Ui) -> bool {
         ui.data_mut(|data| data.remove_temp::<Vec<Pos2>>(id));
         return goes_on;
     };
-    if way.last().is_some_and(|last| last.distance(end) >= STEP) {
-        way.push(end);
+    // All places that the pointer was at: a slow frame has many.
+    let places = ui.input(|i| {
+        let place = |event: &Event| match event {
+            Event::PointerMoved(at) => Some(*at),
+            _ => None,
+        };
+        i.events.iter().filter_map(place).collect::<Vec<Pos2>>()
+    });
+    for at in places.into_iter().chain([end]) {
+        if way.last().is_some_and(|last| last.distance(at) >= STEP) {
+            way.push(at);
+        }
     }
     let area = Area::of(&way, end, state.settings.lasso);
     if response.drag_stopped() {

@@ -15,9 +15,19 @@ use crate::common::{
 
 /// Presses the left button at the first place, moves over the others, and releases it.
 fn drag(window: &mut Window, way: &[Pos2], modifiers: Modifiers) {
+    drag_in(window, way, modifiers, true);
+}
+
+/// The same; `each`: whether each event comes in a frame of its own instead of all in a slow one.
+fn drag_in(window: &mut Window, way: &[Pos2], modifiers: Modifiers, each: bool) {
     let event = |window: &mut Window, event: Event| {
-        window.event_modifiers(event, modifiers);
-        window.step();
+        if each {
+            window.event_modifiers(event, modifiers);
+            window.step();
+        } else {
+            // The harness gives each of its own events a frame.
+            window.input_mut().events.push(event);
+        }
     };
     let button = |pos: Pos2, pressed: bool| Event::PointerButton {
         pos,
@@ -28,12 +38,20 @@ fn drag(window: &mut Window, way: &[Pos2], modifiers: Modifiers) {
     let [first, .., last] = way else {
         panic!("a drag has two ends");
     };
+    if !each {
+        window
+            .input_mut()
+            .events
+            .push(Event::ModifiersChanged(modifiers));
+    }
     event(window, Event::PointerMoved(*first));
     event(window, button(*first, true));
     for &at in &way[1..] {
         event(window, Event::PointerMoved(at));
     }
     event(window, button(*last, false));
+    window.run_steps(4);
+    window.event(Event::ModifiersChanged(Modifiers::NONE));
     settle(window);
 }
 
@@ -75,6 +93,13 @@ fn a_lasso_goes_around_what_lies_between() {
         c + corner(-15.0, 15.0),
         c + corner(-15.0, -15.0),
     ];
+    // Both paces select the same.
+    for each in [true, false] {
+        state(&mut window).run(Edit::SelectNone);
+        drag_in(&mut window, &column, Modifiers::COMMAND, each);
+        let selected = state(&mut window).document.neurons.selected();
+        assert_eq!(selected, [0, 2], "a frame for each event: {each}");
+    }
     drag(&mut window, &diagonal, Modifiers::COMMAND);
     let selected = state(&mut window).document.neurons.selected().to_vec();
     assert_eq!(selected, [1, 2], "a rectangle would have the first, too");
