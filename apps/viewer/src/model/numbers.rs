@@ -20,6 +20,15 @@ pub(crate) fn significant(value: f64) -> String {
     rounded.to_string()
 }
 
+/// A change in percent with its sign; none that rounds to none has one.
+pub(crate) fn change(percent: f64) -> String {
+    let rounded = (10.0 * percent).round() / 10.0;
+    match rounded == 0.0 {
+        true => "0.0 %".to_owned(),
+        false => format!("{rounded:+.1} %"),
+    }
+}
+
 /// A length, area or volume, rounded to significant digits.
 pub(crate) fn measured(value: f64, unit: &str) -> String {
     let a = value.abs();
@@ -43,6 +52,10 @@ mod tests {
         assert_eq!(grouped(1_234_567), "1\u{a0}234\u{a0}567");
         assert_eq!(grouped(12), "12");
         assert_eq!(measured(3.15159, "µm"), "3.15 µm");
+        assert_eq!(
+            [-0.04, 0.04, -0.06, 3.0].map(change),
+            ["0.0 %", "0.0 %", "-0.1 %", "+3.0 %"]
+        );
         assert_eq!(measured(31.5159, "µm"), "31.5 µm");
         assert_eq!(measured(12345.6, "µm²"), "12\u{a0}346 µm²");
     }

@@ -16,6 +16,7 @@ use neurotess::render::{CullView, Placement};
 use super::existing;
 use crate::io::task::Progress;
 use crate::model::document::Detail;
+use crate::model::numbers::grouped;
 use crate::model::save::{MeshLod, MeshOptions};
 use crate::model::targets::{mesh_file, mesh_folder};
 use crate::model::view::View;
@@ -59,7 +60,7 @@ pub(crate) fn meshes(
         [one] => one.display().to_string(),
         many => format!("{} meshes in {}", many.len(), options.out.display()),
     };
-    Ok(format!("Saved {what}: {faces} faces"))
+    Ok(format!("Saved {what}: {} faces", grouped(faces as u64)))
 }
 
 /// The file of each plan. Equal names get a number.

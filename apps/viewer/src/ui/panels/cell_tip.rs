@@ -52,6 +52,8 @@ pub(super) fn show(state: &State, rect: Rect, ui: &Ui) {
         .interactable(false)
         .fixed_pos(at + offset)
         .pivot(pivot)
+        // Over a panel, its lines would show through.
+        .constrain_to(rect)
         .show(ui.ctx(), |ui| {
             plate(ui).inner_margin(6.0).show(ui, |ui| {
                 ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);

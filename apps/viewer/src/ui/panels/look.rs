@@ -59,7 +59,7 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     ui.checkbox(&mut look.ghost_others, "Fade the others");
     if look.ghost_others {
         slider(ui, &mut look.ghost_opacity, 0.02..=0.9, Some(2), |slider| {
-            slider.text("opacity of the others")
+            slider.text("opacity")
         });
     }
     light(&mut look, ui);

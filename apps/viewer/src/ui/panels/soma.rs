@@ -7,6 +7,7 @@ use super::tip::Tip;
 use super::{figures, heading, measured, rings, spines};
 use crate::model::command::Edit;
 use crate::model::document::{Method, SomaEdit, SourceId};
+use crate::model::numbers::change;
 use crate::model::state::State;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
@@ -200,21 +201,15 @@ fn measures(state: &State, id: SourceId, edit: &SomaEdit, ui: &mut Ui) {
         return;
     };
     heading(ui, &format!("Soma of {}", source.name));
-    let change = |value: f64, sphere: f64| 100.0 * (value / sphere - 1.0);
+    let beside = |value: f64, sphere: f64| change(100.0 * (value / sphere - 1.0));
     figures(
         ui,
         "soma figures",
         &[
             ("volume", measured(soma.volume, "µm³")),
-            (
-                "volume / sphere's",
-                format!("{:+.1} %", change(soma.volume, soma.sphere_volume)),
-            ),
+            ("volume / sphere's", beside(soma.volume, soma.sphere_volume)),
             ("area", measured(soma.area, "µm²")),
-            (
-                "area / sphere's",
-                format!("{:+.1} %", change(soma.area, soma.sphere_area)),
-            ),
+            ("area / sphere's", beside(soma.area, soma.sphere_area)),
             (
                 "computed in",
                 format!("{:.1} ms", 1e3 * source.generated.soma_seconds),
