@@ -42,6 +42,34 @@ fn a_window_opens_a_file_is_driven_and_closes() {
         sleep(Duration::from_millis(300));
         display.screenshot(&format!("key_{}", key.replace('+', "_")));
     }
+    // There are edits: it asks, and stays where the answer is no.
+    display.xdotool("key ctrl+q");
+    sleep(Duration::from_secs(2));
+    display.screenshot("asked");
+    display.xdotool("key Escape");
+    sleep(Duration::from_secs(1));
+    assert!(display.screenshot("stays") > 300);
+    assert!(
+        child.try_wait().expect("a child").is_none(),
+        "it asks before it quits"
+    );
+    terminate(&child);
+    assert_eq!(ends(&mut child).code(), Some(130));
+    let remembered =
+        fs::read_to_string(work.path("config").join("viewer.toml")).expect("remembered");
+    assert!(remembered.contains("cell.swc"), "{remembered}");
+}
+
+#[neurotess_testing::test(needs(gpu, display))]
+fn a_window_without_edits_quits_without_a_question() {
+    let display = Display::open();
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let mut child = start(&display, &work, "view cell.swc");
+    wait_for("a picture of the cell", &mut child, || {
+        display.screenshot("unedited") > 300
+    });
+    display.focus();
     display.xdotool("key ctrl+q");
     let status = ends(&mut child);
     let mut said = String::new();
@@ -51,6 +79,18 @@ fn a_window_opens_a_file_is_driven_and_closes() {
     let remembered =
         fs::read_to_string(work.path("config").join("viewer.toml")).expect("remembered");
     assert!(remembered.contains("cell.swc"), "{remembered}");
+}
+
+/// Asks a program to end.
+fn terminate(child: &std::process::Child) {
+    let id = child.id().to_string();
+    let mut kill = std::process::Command::new("kill");
+    assert!(
+        kill.args(["-TERM", &id])
+            .status()
+            .expect("kill starts")
+            .success()
+    );
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu, display))]
@@ -73,14 +113,7 @@ fn a_window_that_is_terminated_remembers_its_settings() {
             assert!(errors.read_line(&mut line).expect("text") > 0, "it goes on");
         }
     }
-    let id = child.id().to_string();
-    let mut kill = std::process::Command::new("kill");
-    assert!(
-        kill.args(["-TERM", &id])
-            .status()
-            .expect("kill starts")
-            .success()
-    );
+    terminate(&child);
     assert_eq!(ends(&mut child).code(), Some(130));
     let file = work.path("config").join("viewer.toml");
     let remembered = fs::read_to_string(file).expect("remembered");
