@@ -13,7 +13,7 @@ use crate::evaluate::{
     Corner, EdgeCurve, EdgeKind, EdgeNormals, PatchRow, PatchRows, PatchShape, SIDES,
 };
 use crate::plan::{Edge, Grid, Plan};
-use crate::{Lod, RefineOptions};
+use crate::{Lod, LodCriterion, RefineOptions};
 
 /// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
 /// evaluated when they are read, so that memory does not grow with the level.
@@ -376,8 +376,12 @@ impl Surface for Refinement<'_> {
         self.mesh.origin
     }
 
+    /// Looks at level 2, where what is between the rings shows: at level 4 it would take two fifths as long as all of
+    /// meshing and writing a cell. Meshes whose tubes turn over were looked at more finely when they were made.
     fn soundness(&self) -> Option<Soundness> {
-        let Measured { volume, extent, .. } = self.measured();
+        let lod = LodCriterion::Homogeneous(2);
+        let looked_at = Refinement::new(self.mesh, lod, &self.options);
+        let Measured { volume, extent, .. } = looked_at.measured();
         let reach = self.mesh.reach();
         Some(Soundness {
             volume,
