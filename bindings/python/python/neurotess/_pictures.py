@@ -200,6 +200,8 @@ def render(
     wireframe: bool = False,
     least_width: float | None = None,
     radius_factor: float | None = None,
+    radius: float | None = None,
+    min_radius: float | None = None,
     synapses: bool | str | Sequence[str] = False,
     synapse_side: Literal["afferent", "efferent"] | None = None,
     points: str | os.PathLike[str] | None = None,
@@ -241,7 +243,8 @@ def render(
     Camera: `view` from a side, or `eye`, `target` (µm) and `up`; `fov` (degrees). `orthographic`: without
     perspective, so that lengths are true at all depths (True, or the height of the picture in µm).
 
-    Look: `wireframe`; of neurites `least_width` (pixels) and `radius_factor`; `light` (``"soft"``, ``"flat"`` or a
+    Look: `wireframe`; of neurites `least_width` (pixels), `radius_factor`, `radius` (µm) of points without one and
+    `min_radius`; `light` (``"soft"``, ``"flat"`` or a
     direction), `ao` (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
 
     Synapses of a circuit's cells: `synapses` (True, or names of `Circuit.edges`), `synapse_side`; or the `points` of
@@ -284,6 +287,8 @@ def render(
         "wireframe": wireframe,
         "least_width": least_width,
         "radius_factor": radius_factor,
+        "radius": radius,
+        "min_radius": min_radius,
         "synapses": synapses,
         "synapse_side": synapse_side,
         "points": points,
