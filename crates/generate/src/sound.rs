@@ -4,93 +4,75 @@
 
 use std::collections::BTreeSet;
 
-use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind, SurfaceMesh, SurfaceVertex};
+use neurotess_mesh::{
+    CoarseMesh, Extent, Patch, PatchKind, SurfaceMesh, SurfaceVertex, TracingPoint,
+};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement, patch_points};
 
 use crate::skeleton::{NONE, Root, Skeleton};
 
-/// Levels at which a suspicious surface is looked at: the rings alone, what is between them, and that more finely.
+/// Levels at which a surface is looked at whose tubes turn over: the rings alone, what is between them, and that more finely.
 const LEVELS: [u32; 3] = [1, 2, 4];
-/// The surface is within the box around all traced points, each with so many radii around it. Between
-/// these levels' points it may reach farther, and nothing is to be beyond two radii.
+/// The surface is within the box around all traced points, each with so many radii around it. Between the points that are
+/// looked at it may reach farther, and nothing is to be beyond two radii: with 1.8, one of some thousand paths that turn
+/// back was.
 const MOST_RADII: f32 = 1.5;
+/// Steps along a side of a patch that may reach far.
+const STEPS: u32 = 8;
+/// A ring whose normal is this far from the way to the next one bends the tube between them beyond both: cosine of 73°. By
+/// eye; what bends less stays between its rings.
+const LEANING: f32 = 0.3;
+/// A tube whose rings differ more than this is wide beside its thinner ring. By eye.
+const TAPERED: f32 = 2.0;
 
 /// The file's own numbers of samples on pieces of the surface that are inside out, or where it is far from the tracing: none
-/// of a sound one. Only where a tube turns over, or a loft reaches far, is the whole surface looked at, which takes as long
-/// as making it.
+/// of a sound one. Only where a tube turns over is the whole surface looked at, which takes as long as making it.
 pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
-    let reach = Reach::new(mesh);
+    let reach = mesh.around_tracing(MOST_RADII);
     let mut faulty = BTreeSet::new();
-    if !(0..mesh.patches.len()).any(|patch| is_suspicious(mesh, &reach, patch)) {
-        return faulty;
+    let mut turns_over = false;
+    for (patch, &Patch { corners, kind }) in mesh.patches.iter().enumerate() {
+        let may_reach_far = match kind {
+            PatchKind::Lateral => {
+                let (cosine, taper) = bend(mesh, corners);
+                turns_over |= cosine < 0.0;
+                cosine < LEANING || taper > TAPERED
+            }
+            PatchKind::Loft => true,
+            PatchKind::Soma | PatchKind::Cap => false,
+        };
+        if may_reach_far && reaches_beyond(mesh, &reach, patch) {
+            faulty.extend(corners.map(|corner| point(mesh, corner).sample.0));
+        }
     }
-    for level in LEVELS {
+    for level in LEVELS.into_iter().filter(|_| turns_over) {
         let lod = LodCriterion::Homogeneous(level);
         let refined = Refinement::new(mesh, lod, &RefineOptions::default());
         let surface = SurfaceMesh::collect(&refined);
         let outside = surface
             .vertices
             .iter()
-            .filter(|vertex| !reach.holds(vertex.position));
+            .filter(|vertex| !reach.has(vertex.position));
         faulty.extend(outside.map(|vertex| vertex.point));
         faulty.extend(inside_out(&surface).map(|vertex| vertex.point));
     }
     faulty
 }
 
-/// How far the surface may reach: the box around all traced points with [`MOST_RADII`] around each.
-struct Reach {
-    low: Vec3,
-    high: Vec3,
+fn reaches_beyond(mesh: &CoarseMesh, reach: &Extent, patch: usize) -> bool {
+    let mut points = Vec::with_capacity((STEPS as usize + 1).pow(2));
+    patch_points(mesh, patch, STEPS, &RefineOptions::default(), &mut points);
+    !points.into_iter().all(|point| reach.has(point))
 }
 
-impl Reach {
-    fn new(mesh: &CoarseMesh) -> Self {
-        let farthest = |sign: f32| {
-            let points = mesh.tracing.iter();
-            let reaches = points.map(|point| sign * point.center + MOST_RADII * point.radius);
-            reaches.reduce(Vec3::max).unwrap_or_default()
-        };
-        Self {
-            low: -farthest(-1.0),
-            high: farthest(1.0),
-        }
-    }
-
-    fn holds(&self, p: Vec3) -> bool {
-        p.cmpge(self.low).all() && p.cmple(self.high).all()
-    }
-}
-
-/// A ring whose normal is this far from the way to the next one bends the tube between them beyond both: cosine of 73°.
-const LEANING: f32 = 0.3;
-
-/// A tube whose rings differ more than this is as wide as the thicker one beside the thinner.
-const TAPERED: f32 = 2.0;
-
-/// Whether a tube's patch turns over, or a patch that may reach farther than its corners does.
-fn is_suspicious(mesh: &CoarseMesh, reach: &Reach, patch: usize) -> bool {
-    let reaches_far = || {
-        let mut points = Vec::with_capacity(81);
-        patch_points(mesh, patch, 8, &RefineOptions::default(), &mut points);
-        !points.into_iter().all(|point| reach.holds(point))
-    };
-    match mesh.patches[patch].kind {
-        PatchKind::Lateral => {
-            let (cosine, taper) = bend(mesh, &mesh.patches[patch]);
-            cosine < 0.0 || (cosine < LEANING || taper > TAPERED) && reaches_far()
-        }
-        PatchKind::Loft => reaches_far(),
-        PatchKind::Soma | PatchKind::Cap => false,
-    }
+fn point(mesh: &CoarseMesh, corner: u32) -> &TracingPoint {
+    &mesh.tracing[mesh.vertices[corner as usize].tracing as usize]
 }
 
 /// Of the angles between the normals of a tube's two rings and the way from one to the other, the cosine of the greatest;
 /// and how many times the thicker ring is as thick as the other.
-fn bend(mesh: &CoarseMesh, patch: &Patch) -> (f32, f32) {
-    let point = |corner: u32| &mesh.tracing[mesh.vertices[corner as usize].tracing as usize];
-    let (near, far) = (point(patch.corners[0]), point(patch.corners[3]));
+fn bend(mesh: &CoarseMesh, corners: [u32; 4]) -> (f32, f32) {
+    let [near, far] = [corners[0], corners[3]].map(|corner| point(mesh, corner));
     let way = (far.center - near.center).normalize_or_zero();
     let cosine = near
         .tangent

@@ -41,6 +41,11 @@ impl Extent {
         }
     }
 
+    /// Whether a point is within it.
+    pub fn has(&self, point: Vec3) -> bool {
+        point.cmpge(self.low).all() && point.cmple(self.high).all()
+    }
+
     /// Whether another is within it, but for rounding.
     fn holds(&self, other: Self) -> bool {
         let slack = Vec3::splat(ROUNDING * self.low.abs().max(self.high.abs()).max_element());
@@ -53,9 +58,14 @@ impl Extent {
 impl CoarseMesh {
     /// The box that the surface is within at any level: around all traced points, each with two radii.
     pub fn reach(&self) -> Extent {
+        self.around_tracing(MOST_RADII)
+    }
+
+    /// The box around all traced points, each with so many radii.
+    pub fn around_tracing(&self, radii: f32) -> Extent {
         let points = self.tracing.iter();
         points.fold(Extent::NONE, |reach, point| {
-            let around = Vec3::splat(MOST_RADII * point.radius);
+            let around = Vec3::splat(radii * point.radius);
             reach
                 .with(point.center - around)
                 .with(point.center + around)

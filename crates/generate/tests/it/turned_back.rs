@@ -183,3 +183,31 @@ fn a_thick_end_that_the_path_comes_back_to_has_its_volume() {
     let generated = generate(&cell, &GenerateOptions::default()).expect("meshed");
     assert_eq!(fault(&cell, &generated), None);
 }
+
+/// Two children that leave side by side meet far from their fork: there a corner's offset is many radii long.
+#[neurotess_testing::test]
+fn a_fork_whose_children_leave_side_by_side_reaches_no_farther() {
+    let step = |way, turn, axis, factor| Step {
+        way,
+        turn,
+        axis,
+        aside: 0.0,
+        factor,
+    };
+    let back = std::f32::consts::PI;
+    let root = [
+        step(18.0, 0.0, 0.0, 10.0),
+        step(0.764, 0.0, 0.0, 1.0),
+        step(0.2, back, 3.073, 1.0),
+        step(7.217, 2.848, 0.906, 1.0),
+    ];
+    let branch = [
+        step(2.876, back, 0.0, 1.0),
+        step(10.101, 0.0, 0.0, 0.1),
+        step(2.55, back, 0.0, 0.1),
+        step(2.553, 2.618, 0.0, 10.0),
+    ];
+    let cell = cell(points(Vec3::ZERO, 1.0, &root), Some(&branch));
+    let generated = generate(&cell, &GenerateOptions::default()).expect("meshed");
+    assert_eq!(fault(&cell, &generated), None);
+}
