@@ -4,6 +4,7 @@
 
 use std::collections::BTreeSet;
 
+use glam::Vec3;
 use neurotess_mesh::{
     CoarseMesh, Extent, Patch, PatchKind, SurfaceMesh, SurfaceVertex, TracingPoint,
 };
@@ -60,6 +61,15 @@ pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
 }
 
 fn reaches_beyond(mesh: &CoarseMesh, reach: &Extent, patch: usize) -> bool {
+    let corners = mesh.patches[patch].corners;
+    let own = corners.iter().fold(Extent::NONE, |own, &corner| {
+        own.with(mesh.vertices[corner as usize].position)
+    });
+    // No curve between the corners leaves them by more than they are apart: nearly all patches are far within.
+    let apart = Vec3::splat(own.low.distance(own.high));
+    if reach.has(own.low - apart) && reach.has(own.high + apart) {
+        return false;
+    }
     let mut points = Vec::with_capacity((STEPS as usize + 1).pow(2));
     patch_points(mesh, patch, STEPS, &RefineOptions::default(), &mut points);
     !points.into_iter().all(|point| reach.has(point))

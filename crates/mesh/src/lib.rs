@@ -46,6 +46,7 @@ mod table;
 mod topology;
 mod unit;
 mod walls;
+mod watched;
 mod weld;
 mod write;
 
@@ -72,5 +73,6 @@ pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};
 pub use unit::Unit;
 pub use walls::{Walled, with_walls};
+pub use watched::Watched;
 pub use weld::merge_identical;
 pub use write::{GlbNode, WriteError, write, write_glb};

@@ -51,7 +51,11 @@ impl Surface for Placed<'_> {
     }
 
     fn soundness(&self) -> Option<Soundness> {
-        self.surface.soundness()
+        let soundness = self.surface.soundness()?;
+        Some(Soundness {
+            reach: soundness.reach.transformed(self.linear),
+            ..soundness
+        })
     }
 
     fn vertex_count(&self) -> usize {

@@ -1,6 +1,6 @@
 //! Whether a surface is one around its tracing at all. What is not is a fault of ours, and never written.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use crate::CoarseMesh;
 
@@ -41,6 +41,24 @@ impl Extent {
         }
     }
 
+    /// The box around it as it is elsewhere.
+    pub(crate) fn transformed(self, linear: Mat3) -> Self {
+        let corner = |k: u32| {
+            let pick = |axis: u32| {
+                if k >> axis & 1 == 0 {
+                    self.low
+                } else {
+                    self.high
+                }
+            };
+            linear * Vec3::new(pick(0).x, pick(1).y, pick(2).z)
+        };
+        match self.low.cmpgt(self.high).any() {
+            true => self,
+            false => (0..8).map(corner).fold(Self::NONE, Self::with),
+        }
+    }
+
     /// Whether a point is within it.
     pub fn has(&self, point: Vec3) -> bool {
         point.cmpge(self.low).all() && point.cmple(self.high).all()
@@ -73,14 +91,12 @@ impl CoarseMesh {
     }
 }
 
-/// What a surface is, beside what it may be.
+/// What is known of a surface before any of its vertices is made, for the check of what was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Soundness {
-    /// Volume (µm³).
+    /// Volume (µm³) of the coarse mesh. Those whose tubes turn over are looked at more finely when they are made.
     pub volume: f64,
-    /// Around all vertices.
-    pub extent: Extent,
-    /// What it may be within: [`CoarseMesh::reach`].
+    /// What the surface may be within, in its own unit: [`CoarseMesh::reach`].
     pub reach: Extent,
 }
 
@@ -111,16 +127,12 @@ pub enum Unsound {
 }
 
 impl Soundness {
-    /// An error if the surface is inside out or reaches too far.
+    /// An error if the surface, which was found to extend so far, is inside out or reaches too far.
     ///
     /// # Errors
     /// Says which.
-    pub fn check(&self) -> Result<(), Unsound> {
-        let Self {
-            volume,
-            extent,
-            reach,
-        } = *self;
+    pub fn check(&self, extent: Extent) -> Result<(), Unsound> {
+        let Self { volume, reach } = *self;
         if volume < 0.0 {
             return Err(Unsound::InsideOut { volume });
         }
@@ -146,25 +158,29 @@ mod tests {
             tracing: vec![point],
             ..CoarseMesh::default()
         };
-        let of = |volume: f64, x: f32| Soundness {
-            volume,
-            extent: Extent::NONE.with(Vec3::ZERO).with(Vec3::X * x),
-            reach: mesh.reach(),
+        let of = |volume: f64, x: f32| {
+            let reach = mesh.reach();
+            let extent = Extent::NONE.with(Vec3::ZERO).with(Vec3::X * x);
+            Soundness { volume, reach }.check(extent)
         };
-        assert_eq!(of(1.0, 2.0).check(), Ok(()));
-        assert!(matches!(
-            of(-1.0, 1.0).check(),
-            Err(Unsound::InsideOut { .. })
-        ));
-        assert!(matches!(
-            of(1.0, 2.1).check(),
-            Err(Unsound::FarFromTracing { .. })
-        ));
+        assert_eq!(of(1.0, 2.0), Ok(()));
+        assert!(matches!(of(-1.0, 1.0), Err(Unsound::InsideOut { .. })));
+        assert!(matches!(of(1.0, 2.1), Err(Unsound::FarFromTracing { .. })));
         let empty = Soundness {
             volume: 0.0,
-            extent: Extent::NONE,
             reach: CoarseMesh::default().reach(),
         };
-        assert_eq!(empty.check(), Ok(()));
+        assert_eq!(empty.check(Extent::NONE), Ok(()));
+    }
+
+    #[test]
+    fn boxes_turn_and_grow_with_what_is_in_them() {
+        let extent = Extent::NONE.with(Vec3::ZERO).with(Vec3::new(1.0, 2.0, 3.0));
+        let turned = extent.transformed(Mat3::from_cols(-Vec3::Y, Vec3::X * 2.0, Vec3::Z));
+        assert_eq!(
+            turned,
+            Extent::NONE.with(-Vec3::Y).with(Vec3::new(4.0, 0.0, 3.0))
+        );
+        assert_eq!(Extent::NONE.transformed(Mat3::IDENTITY), Extent::NONE);
     }
 }

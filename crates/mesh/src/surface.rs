@@ -56,8 +56,7 @@ pub trait Surface: Sync {
     fn regions(&self) -> Vec<Region> {
         Vec::new()
     }
-    /// What it is beside what it may be, for surfaces that know their tracing: what is unsound is not written. May
-    /// evaluate the whole surface.
+    /// What its vertices are checked against, for surfaces that know their tracing: what is unsound is not written.
     fn soundness(&self) -> Option<Soundness> {
         None
     }

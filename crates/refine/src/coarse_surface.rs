@@ -1,9 +1,7 @@
 //! The coarse mesh as a surface of its own: level 0.
 
 use glam::DVec3;
-use neurotess_mesh::{
-    CoarseMesh, Extent, Faces, Soundness, Surface, SurfaceVertex, measure_surface,
-};
+use neurotess_mesh::{CoarseMesh, Faces, Soundness, Surface, SurfaceVertex, measure_surface};
 
 /// The coarse mesh as a [`Surface`]: its quads as they are, or each cut into two triangles.
 pub struct CoarseSurface<'m> {
@@ -24,11 +22,8 @@ impl Surface for CoarseSurface<'_> {
     }
 
     fn soundness(&self) -> Option<Soundness> {
-        let vertices = self.mesh.vertices.iter();
-        let extent = vertices.fold(Extent::NONE, |extent, v| extent.with(v.position));
         Some(Soundness {
             volume: measure_surface(self).volume,
-            extent,
             reach: self.mesh.reach(),
         })
     }

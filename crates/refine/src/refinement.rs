@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{
-    CoarseMesh, Extent, Faces, Patch, PatchKind, Role, Soundness, Surface, SurfaceVertex,
-    TracingPoint,
+    CoarseMesh, Faces, Patch, PatchKind, Role, Soundness, Surface, SurfaceVertex, TracingPoint,
 };
 use rayon::prelude::*;
 
@@ -13,7 +12,7 @@ use crate::evaluate::{
     Corner, EdgeCurve, EdgeKind, EdgeNormals, PatchRow, PatchRows, PatchShape, SIDES,
 };
 use crate::plan::{Edge, Grid, Plan};
-use crate::{Lod, LodCriterion, RefineOptions};
+use crate::{CoarseSurface, Lod, RefineOptions};
 
 /// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
 /// evaluated when they are read, so that memory does not grow with the level.
@@ -99,23 +98,18 @@ impl<'m> Refinement<'m> {
     /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
     /// cores.
     pub fn volume_and_area(&self) -> (f64, f64) {
-        let measured = self.measured();
-        (measured.volume, measured.area)
-    }
-
-    fn measured(&self) -> Measured {
         let center = self
             .mesh
             .vertices
             .first()
             .map_or(Vec3::ZERO, |v| v.position);
         let blocks = self.mesh.patches.len().div_ceil(BLOCK);
-        let sums: Vec<Measured> = (0..blocks)
+        let sums: Vec<(f64, f64)> = (0..blocks)
             .into_par_iter()
             .map(|block| {
                 let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
                 let mut faces = Faces::default();
-                let mut sum = Measured::default();
+                let mut sum = (0.0, 0.0);
                 let mut positions = Vec::new();
                 let mut rows = Vec::new();
                 for patch in block * BLOCK..end {
@@ -128,13 +122,7 @@ impl<'m> Refinement<'m> {
                 sum
             })
             .collect();
-        let mut sum = Measured::default();
-        for block in sums {
-            sum.volume += block.volume;
-            sum.area += block.area;
-            sum.extent = sum.extent.and(block.extent);
-        }
-        sum
+        sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1))
     }
 
     fn measure_patch(
@@ -143,16 +131,12 @@ impl<'m> Refinement<'m> {
         center: Vec3,
         faces: &Faces,
         positions: &mut Vec<(u32, DVec3)>,
-        sum: &mut Measured,
+        sum: &mut (f64, f64),
     ) {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         let corners = self.mesh.patches[patch].corners;
         positions.clear();
-        let mut extent = sum.extent;
-        let mut add = |index: u32, p: Vec3| {
-            extent = extent.with(p);
-            positions.push((index, (p - center).as_dvec3()));
-        };
+        let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
         for v in corners {
             add(v, self.mesh.vertices[v as usize].position);
         }
@@ -171,7 +155,6 @@ impl<'m> Refinement<'m> {
                 add(index, shape.interior(&self.options, x, y).0);
             }
         }
-        sum.extent = extent;
         positions.sort_unstable_by_key(|&(index, _)| index);
         let at = |index: u32| {
             let found = positions.binary_search_by_key(&index, |&(i, _)| i);
@@ -184,8 +167,8 @@ impl<'m> Refinement<'m> {
         for [a, b, c] in faces.triangles.iter().copied().chain(halves) {
             let [a, b, c] = [a, b, c].map(at);
             let cross = (b - a).cross(c - a);
-            sum.volume += a.dot(cross) / 6.0;
-            sum.area += 0.5 * cross.length();
+            sum.0 += a.dot(cross) / 6.0;
+            sum.1 += 0.5 * cross.length();
         }
     }
 
@@ -353,41 +336,13 @@ fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32)
     }
 }
 
-/// What all patches of a surface add up to.
-struct Measured {
-    /// Volume (µm³) and area (µm²).
-    volume: f64,
-    area: f64,
-    extent: Extent,
-}
-
-impl Default for Measured {
-    fn default() -> Self {
-        Self {
-            volume: 0.0,
-            area: 0.0,
-            extent: Extent::NONE,
-        }
-    }
-}
-
 impl Surface for Refinement<'_> {
     fn origin(&self) -> DVec3 {
         self.mesh.origin
     }
 
-    /// Looks at level 2, where what is between the rings shows: at level 4 it would take two fifths as long as all of
-    /// meshing and writing a cell. Meshes whose tubes turn over were looked at more finely when they were made.
     fn soundness(&self) -> Option<Soundness> {
-        let lod = LodCriterion::Homogeneous(2);
-        let looked_at = Refinement::new(self.mesh, lod, &self.options);
-        let Measured { volume, extent, .. } = looked_at.measured();
-        let reach = self.mesh.reach();
-        Some(Soundness {
-            volume,
-            extent,
-            reach,
-        })
+        CoarseSurface::new(self.mesh, true).soundness()
     }
 
     fn vertex_count(&self) -> usize {

@@ -98,7 +98,10 @@ fn runner(folder: &Path) -> anyhow::Result<String> {
     )?;
     let made = json!({ "version": env!("CARGO_PKG_VERSION"), "commit": commit.trim() });
     fs::write(folder.join(MADE), made.to_string())?;
-    strip(&std::env::current_exe()?, &folder.join("xtask"))
+    // This program as it runs: Cargo may have built another in its place meanwhile.
+    let own = folder.join("xtask");
+    fs::copy("/proc/self/exe", &own).context("this program")?;
+    strip(&own, &own)
 }
 
 /// Copies a program without its symbols.

@@ -28,7 +28,7 @@ use glam::DVec3;
 
 #[cfg(doc)]
 use crate::FaceLabel;
-use crate::{Faces, Format, Surface, SurfaceVertex, Unsound};
+use crate::{Faces, Format, Surface, SurfaceVertex, Unsound, Watched};
 use in_order::in_order;
 
 /// Why a surface could not be written.
@@ -101,9 +101,8 @@ pub fn write<W: Write + Seek>(
     if surface.vertex_count() > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(surface.vertex_count()));
     }
-    if let Some(soundness) = surface.soundness() {
-        soundness.check()?;
-    }
+    let watched = Watched::new(surface);
+    let surface: &dyn Surface = &watched;
     let mut file = File::begin(out)?;
     match format {
         Format::Ply => ply::write(surface, &mut file),
@@ -118,7 +117,7 @@ pub fn write<W: Write + Seek>(
         Format::Smesh => tetgen::write_smesh(surface, &mut file),
     }?;
     file.out.flush()?;
-    Ok(())
+    Ok(watched.check()?)
 }
 
 /// Writes several surfaces as one GLB, each shown by nodes: a surface that stands in many places is in the
@@ -135,14 +134,20 @@ pub fn write_glb<W: Write + Seek>(
     if let Some(most) = most.filter(|&most| most > u32::MAX as usize) {
         return Err(WriteError::TooManyVertices(most));
     }
-    for surface in surfaces {
-        if let Some(soundness) = surface.soundness() {
-            soundness.check()?;
-        }
-    }
+    let watched: Vec<Watched<'_>> = surfaces
+        .iter()
+        .map(|surface| Watched::new(*surface))
+        .collect();
+    let surfaces: Vec<&dyn Surface> = watched
+        .iter()
+        .map(|surface| surface as &dyn Surface)
+        .collect();
     let mut file = File::begin(out)?;
-    glb::write_all(surfaces, nodes, &mut file)?;
+    glb::write_all(&surfaces, nodes, &mut file)?;
     file.out.flush()?;
+    for surface in &watched {
+        surface.check()?;
+    }
     Ok(())
 }
 

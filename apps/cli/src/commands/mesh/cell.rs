@@ -8,7 +8,9 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::Generated;
-use neurotess::mesh::{self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, WriteError};
+use neurotess::mesh::{
+    self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, Watched, WriteError,
+};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
@@ -189,10 +191,17 @@ pub(super) fn finish(
     seconds.refine = meshed.merging_seconds + cell_surface.seconds;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
     let to = (out, &mut output);
+    let watched = Watched::new(cell_surface.surface());
     let walled = options.walls.then(|| {
-        let whole = SurfaceMesh::collect(cell_surface.surface());
+        let whole = SurfaceMesh::collect(&watched);
         surfaces::with_walls(whole)
     });
+    if walled.is_some() {
+        // With walls it knows no tracing any more.
+        watched
+            .check()
+            .map_err(|e| failed(Failure(e.to_string())))?;
+    }
     let surface: &dyn Surface = match &walled {
         Some(walled) => walled,
         None => cell_surface.surface(),

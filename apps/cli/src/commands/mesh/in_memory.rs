@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use neurotess::mesh::{Quality, Surface};
+use neurotess::mesh::{Quality, Surface, Watched};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
@@ -87,9 +87,6 @@ impl MeshRecipe {
         take: impl FnOnce(&dyn Surface) -> T,
     ) -> Result<(T, MeshReport), String> {
         let surface = meshed.surface(&self.options);
-        if let Some(soundness) = surface.surface().soundness() {
-            soundness.check().map_err(|e| e.to_string())?;
-        }
         let (generated, merged) = (&meshed.generated, surface.merged());
         let report = MeshReport {
             closed: surface.topology.closed,
@@ -102,7 +99,10 @@ impl MeshRecipe {
             quality: merged.and_then(|merged| merged.quality),
             warnings: warnings(&[], meshed, &surface),
         };
-        Ok((take(surface.surface()), report))
+        let watched = Watched::new(surface.surface());
+        let taken = take(&watched);
+        watched.check().map_err(|e| e.to_string())?;
+        Ok((taken, report))
     }
 }
 

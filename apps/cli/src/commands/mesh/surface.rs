@@ -138,13 +138,15 @@ impl Merged {
                 at.map_or(-1, |points| points[0])
             )));
         }
-        let vertices = merged.mesh.vertices.iter();
         let soundness = Soundness {
             volume: measure_surface(&merged.mesh).volume,
-            extent: vertices.fold(Extent::NONE, |extent, v| extent.with(v.position)),
             reach: mesh.reach(),
         };
-        soundness.check().map_err(|e| Failure(e.to_string()))?;
+        let vertices = merged.mesh.vertices.iter();
+        let extent = vertices.fold(Extent::NONE, |extent, v| extent.with(v.position));
+        soundness
+            .check(extent)
+            .map_err(|e| Failure(e.to_string()))?;
         Ok(Self {
             topology: merged.topology,
             quality: options.simulation.then(|| quality(&merged.mesh)),
