@@ -245,7 +245,10 @@ impl Run {
     /// The first picture, with caches that are empty, and the second with what it left there.
     fn cold_start(&self, most: Duration) -> anyhow::Result<Done> {
         let clock = Instant::now();
-        let cache = self.place.work.join("first").display().to_string();
+        let cache = self.place.work.join("first");
+        // NVIDIA's driver keeps nothing in a folder that is not there.
+        fs::create_dir_all(&cache)?;
+        let cache = cache.display().to_string();
         let caches = CACHES.map(|name| (name, cache.as_str()));
         let file = self.place.work.join("cold.png");
         let mut pictures = Vec::new();

@@ -1,6 +1,6 @@
 //! The adapters of this machine, and which of them draws.
 
-use wgpu::{Adapter, Backends, DeviceType, DownlevelFlags};
+use wgpu::{Adapter, Backend, Backends, DeviceType, DownlevelFlags};
 
 use crate::gpu::error::DeviceError;
 
@@ -93,8 +93,25 @@ fn rank(adapter: &Adapter) -> u8 {
 /// What an adapter would have to be able to do.
 fn lacks(adapter: &Adapter) -> Vec<&'static str> {
     let able = adapter.get_downlevel_capabilities().flags;
+    let info = adapter.get_info();
+    if info.backend == Backend::Gl && is_old_opengl(&info.driver_info) {
+        return vec!["OpenGL 4.3"];
+    }
     let missing = NEEDED.iter().filter(|(needed, _)| !able.contains(*needed));
     missing.map(|&(_, called)| called).collect()
+}
+
+/// Whether the version that a driver gives, as in `3.3.0 NVIDIA 580.159.04`, has no shaders that compute. NVIDIA's is
+/// asked for 3.3 by wgpu, gives just that, and yet says that it computes (gfx-rs/wgpu#8676).
+fn is_old_opengl(version: &str) -> bool {
+    let mut numbers = version
+        .split(|c: char| !c.is_ascii_digit())
+        .map(str::parse::<u32>);
+    match [numbers.next(), numbers.next()] {
+        [Some(Ok(major)), Some(Ok(minor))] => (major, minor) < (4, 3),
+        // OpenGL ES, whose capabilities are told right.
+        _ => false,
+    }
 }
 
 /// An adapter that may be chosen.
@@ -189,6 +206,21 @@ mod tests {
                 software: true,
             },
             lacks: lacks.to_vec(),
+        }
+    }
+
+    #[test]
+    fn old_versions_of_opengl_cannot_compute() {
+        for old in ["3.3.0 NVIDIA 580.159.04", "4.2 (Core Profile) Mesa 22.3.6"] {
+            assert!(is_old_opengl(old), "{old}");
+        }
+        for new in [
+            "4.5 (Core Profile) Mesa 22.3.6",
+            "4.6.0 NVIDIA 580.159.04",
+            "OpenGL ES 3.1 Mesa 22.3.6",
+            "",
+        ] {
+            assert!(!is_old_opengl(new), "{new}");
         }
     }
 

@@ -7,5 +7,6 @@ pub(crate) mod device;
 pub(crate) mod error;
 pub(crate) mod growable;
 mod heap;
+pub(crate) mod parallel;
 pub(crate) mod shader;
 pub(crate) mod timing;

@@ -89,7 +89,12 @@ impl Gpu {
                 label: Some(shader.name),
                 source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
             });
-        self.explain_fault(|message| shader.explain(message));
+        // Others compile beside it.
+        let label = format!("'{}'", shader.name);
+        self.explain_fault(|message| match message.contains(&label) {
+            true => shader.explain(message),
+            false => message.to_owned(),
+        });
         module
     }
 }

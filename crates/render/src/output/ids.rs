@@ -9,6 +9,7 @@ use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile};
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::gpu::parallel::side_by_side;
 use crate::gpu::shader;
 use crate::output::tiles::TileRenderer;
 use crate::shading::shade::{self, DEPTH_FORMAT, GUARD, PipelineKey, Shade};
@@ -66,13 +67,18 @@ impl Identifier {
         let ids = (0..source.shaders()).map(|shader| source.id_shader(shader));
         let ids: Vec<WgslFile> = ids.collect::<Option<_>>()?;
         let device = &gpu.device;
-        let pipeline = |shader: usize| {
+        let layouts: Vec<_> = (0..ids.len()).map(|shader| source.layout(shader)).collect();
+        let shaders = ids.iter().enumerate();
+        let shaders: Vec<Shader> = shaders
+            .map(|(shader, &id)| ids_shader(&source.shader(shader), id))
+            .collect();
+        let pipelines = side_by_side(shaders.len(), |shader| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("ids"),
-                bind_group_layouts: &[Some(source.layout(shader)), Some(&renderer.shader.layout)],
+                bind_group_layouts: &[Some(layouts[shader]), Some(&renderer.shader.layout)],
                 immediate_size: 0,
             });
-            let module = gpu.shader_module(&ids_shader(&source.shader(shader), ids[shader]));
+            let module = gpu.shader_module(&shaders[shader]);
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("ids"),
                 layout: Some(&layout),
@@ -100,10 +106,10 @@ impl Identifier {
                 multiview_mask: None,
                 cache: None,
             })
-        };
+        });
         Some(Self {
             key: renderer.key().without_edges(),
-            pipelines: (0..source.shaders()).map(pipeline).collect(),
+            pipelines,
             canvas: None,
         })
     }

@@ -5,6 +5,7 @@ use neurotess_refine::wgsl::{Shader, ShaderParts};
 
 use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture_binding, uniform};
 use crate::gpu::device::Gpu;
+use crate::gpu::parallel::{all_of, beside};
 use crate::gpu::shader;
 use crate::shading::targets::Targets;
 use crate::view::frame::Frame;
@@ -165,17 +166,40 @@ impl Finisher {
                 cache: None,
             })
         };
+        let last_entry = match last {
+            Last::Gather => "gather",
+            Last::Accumulate => "accumulate",
+        };
+        let entries = [
+            FINDING[0],
+            "copy_depths",
+            "occlude",
+            "blur_rows",
+            "blur_columns",
+            last_entry,
+        ];
+        let (
+            find_pixels,
+            [
+                find_blocks,
+                copy_depths,
+                occlude,
+                blur_rows,
+                blur_columns,
+                last,
+            ],
+        ) = beside(
+            || (last == Last::Gather).then(|| pipeline(FINDING[1])),
+            || all_of(|place| pipeline(entries[place])),
+        );
         Self {
-            find_blocks: pipeline(FINDING[0]),
-            find_pixels: (last == Last::Gather).then(|| pipeline(FINDING[1])),
-            copy_depths: pipeline("copy_depths"),
-            occlude: pipeline("occlude"),
-            blur_rows: pipeline("blur_rows"),
-            blur_columns: pipeline("blur_columns"),
-            last: pipeline(match last {
-                Last::Gather => "gather",
-                Last::Accumulate => "accumulate",
-            }),
+            find_blocks,
+            find_pixels,
+            copy_depths,
+            occlude,
+            blur_rows,
+            blur_columns,
+            last,
             layout,
             dispatch_layout,
         }

@@ -6,6 +6,7 @@ use neurotess_refine::wgsl::{Constants, Shader as Composed, ShaderParts};
 
 use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
+use crate::gpu::parallel::side_by_side;
 use crate::gpu::shader;
 use crate::scene::color::{CATEGORY_BIT, ColorTable, Rgb, is_dark, linear, luminance};
 use crate::sources::{SourceKey, VertexSource};
@@ -270,6 +271,12 @@ impl DrawPass<'_> {
         layout: &wgpu::BindGroupLayout,
     ) -> Vec<wgpu::RenderPipeline> {
         let PipelineKey { samples, cut, .. } = key;
+        let Self {
+            label,
+            shader,
+            entry_points,
+            formats,
+        } = *self;
         let both_sides = |shader: usize| cut || source.is_two_sided(shader);
         let device = &gpu.device;
         let target = |format: wgpu::TextureFormat| {
@@ -279,24 +286,29 @@ impl DrawPass<'_> {
                 write_mask: wgpu::ColorWrites::ALL,
             })
         };
-        let pipeline = |shader: usize| {
+        let shaders: Vec<Composed> = (0..source.shaders()).map(shader).collect();
+        let layouts: Vec<_> = (0..shaders.len())
+            .map(|shader| source.layout(shader))
+            .collect();
+        let both_sides: Vec<bool> = (0..shaders.len()).map(both_sides).collect();
+        side_by_side(shaders.len(), |shader| {
             let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(self.label),
-                bind_group_layouts: &[Some(source.layout(shader)), Some(layout)],
+                label: Some(label),
+                bind_group_layouts: &[Some(layouts[shader]), Some(layout)],
                 immediate_size: 0,
             });
-            let module = gpu.shader_module(&(self.shader)(shader));
+            let module = gpu.shader_module(&shaders[shader]);
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(self.label),
+                label: Some(label),
                 layout: Some(&pipeline_layout),
                 vertex: wgpu::VertexState {
                     module: &module,
-                    entry_point: Some(self.entry_points[0]),
+                    entry_point: Some(entry_points[0]),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState {
-                    cull_mode: (!both_sides(shader)).then_some(wgpu::Face::Back),
+                    cull_mode: (!both_sides[shader]).then_some(wgpu::Face::Back),
                     ..wgpu::PrimitiveState::default()
                 },
                 depth_stencil: Some(wgpu::DepthStencilState {
@@ -312,15 +324,14 @@ impl DrawPass<'_> {
                 },
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
-                    entry_point: Some(self.entry_points[1]),
+                    entry_point: Some(entry_points[1]),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &self.formats.map(target),
+                    targets: &formats.map(target),
                 }),
                 multiview_mask: None,
                 cache: None,
             })
-        };
-        (0..source.shaders()).map(pipeline).collect()
+        })
     }
 }
 

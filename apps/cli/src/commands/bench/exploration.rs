@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::args::ExplorationArgs;
-use super::methods::{adaptive, instances, median};
+use super::methods::{adaptive, instances, median, warm_up};
 use super::scenes::{self, BenchScene, Neuron};
 use crate::report::Reporter;
 
@@ -163,6 +163,7 @@ fn times(
 ) -> anyhow::Result<Times> {
     let mut meter = Meter::new(gpu, source, colors)?;
     let mut times: Vec<FrameTime> = Vec::new();
+    warm_up(gpu, &mut meter, source, frame)?;
     for i in 0..=frames {
         let turned = Frame {
             camera: frame.camera.turned(TURN * f64::from(i)),

@@ -1,12 +1,14 @@
 //! The methods that are compared, and how a frame of each is timed.
 
+use std::time::{Duration, Instant};
+
 use glam::DVec3;
 use neurotess::mesh::{CoarseMesh, Surface};
 use neurotess::refine::{Lod, LodCriterion, RefineOptions, Refinement};
 use neurotess::render::color::ColorTable;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, FrameTime, Gpu, Instance, Meter, Place, Placement, Prerefined,
-    PrerefinedSurface, Scene, Template, TemplateId, Templates, VertexSource,
+    Adaptive, AdaptiveSettings, Frame, FrameTime, Gpu, Instance, Meter, Place, Placement,
+    Prerefined, PrerefinedSurface, Scene, Template, TemplateId, Templates, VertexSource,
 };
 use serde::Serialize;
 
@@ -15,6 +17,8 @@ use super::scenes::{BenchScene, Neuron};
 
 /// Bytes of a stored triangle: its corners, and half a vertex.
 const BYTES_OF_TRIANGLE: u64 = 12 + 12;
+/// How long hardware draws before it is timed. NVIDIA's clocks take tenths of a second to climb.
+const WARM_UP: Duration = Duration::from_millis(250);
 
 /// Methods that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -188,10 +192,26 @@ impl MethodTimer<'_> {
         if first.waited_ms > 1e3 * self.args.patience {
             return Ok(vec![first]);
         }
+        warm_up(self.gpu, &mut meter, source, &scene.frame)?;
         (0..self.args.frames)
             .map(|_| Ok(meter.time(source, &scene.frame)?))
             .collect()
     }
+}
+
+/// Draws a frame over and over, uncounted: the clock of graphics hardware climbs under load only. An H200's first
+/// frames took up to six times as long as those of larger scenes after them.
+pub(crate) fn warm_up(
+    gpu: &Gpu,
+    meter: &mut Meter,
+    source: &mut dyn VertexSource,
+    frame: &Frame,
+) -> anyhow::Result<()> {
+    let clock = Instant::now();
+    while !gpu.adapter.software && clock.elapsed() < WARM_UP {
+        meter.time(source, frame)?;
+    }
+    Ok(())
 }
 
 /// A scene that is refined as it is drawn.

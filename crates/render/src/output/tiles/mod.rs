@@ -12,6 +12,7 @@ mod tile;
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
+use crate::gpu::parallel::beside;
 use crate::gpu::timing::{Pass, Timer};
 use crate::output::static_picture::collect::{Collected, Collector, Wanted};
 use crate::output::watch::Watch;
@@ -53,10 +54,14 @@ impl TileRenderer {
         let samples = key.samples;
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let (shader, finisher) = beside(
+            || Shader::new(gpu, source, key),
+            || Finisher::new(gpu, samples, Last::Gather),
+        );
         let renderer = Self {
             key,
-            shader: Shader::new(gpu, source, key),
-            finisher: Finisher::new(gpu, samples, Last::Gather),
+            shader,
+            finisher,
             shade: make(gpu, "shade", size_of::<Shade>() as u64, uniform),
             finish: make(gpu, "finish", size_of::<Finish>() as u64, uniform),
             table: make(gpu, "colors", 16, storage),

@@ -14,6 +14,7 @@
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 
 use crate::gpu::device::Gpu;
+use crate::gpu::parallel::all_of;
 use crate::gpu::shader;
 use crate::scene::templates::CLUSTER;
 use crate::scene::templates::Page;
@@ -80,7 +81,8 @@ pub(crate) struct Passes {
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, page: &wgpu::BindGroupLayout, layouts: &WorkLayouts) -> Self {
         let device = &gpu.device;
-        let modules = modules().map(|shader| gpu.shader_module(&shader));
+        let shaders = modules();
+        let modules: [_; 7] = all_of(|module| gpu.shader_module(&shaders[module]));
         let pipeline = |module: usize, entry, own: &wgpu::BindGroupLayout| {
             let groups = [page, &layouts.clusters, own].map(Some);
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -110,8 +112,10 @@ impl Passes {
             scan_buckets,
             flatten,
             scatter,
-        ] = ENTRIES
-            .map(|(module, entry, written)| pipeline(module, entry, layouts.written(written)));
+        ] = all_of(|place| {
+            let (module, entry, written) = ENTRIES[place];
+            pipeline(module, entry, layouts.written(written))
+        });
         Self {
             classify,
             decide_plain,

@@ -14,6 +14,7 @@ use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::growable::GrowableBuffer;
+use crate::gpu::parallel::side_by_side;
 use crate::gpu::shader;
 
 /// Twin of the struct in `selection.wgsl`.
@@ -156,27 +157,25 @@ impl Passes {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
         let device = &gpu.device;
         let module = gpu.shader_module(&select_shader());
-        let mut layouts = Vec::new();
-        let mut pipelines = Vec::new();
-        for step in STEPS {
+        let made = side_by_side(STEPS.len(), |step| {
+            let step = &STEPS[step];
             let layout = group_layout(device, step.entry, &step.entries());
             let of_pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(step.entry),
                 bind_group_layouts: &[Some(&layout)],
                 immediate_size: 0,
             });
-            pipelines.push(
-                device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(step.entry),
-                    layout: Some(&of_pipeline),
-                    module: &module,
-                    entry_point: Some(step.entry),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    cache: None,
-                }),
-            );
-            layouts.push(layout);
-        }
+            let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(step.entry),
+                layout: Some(&of_pipeline),
+                module: &module,
+                entry_point: Some(step.entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+            (pipeline, layout)
+        });
+        let (pipelines, layouts) = made.into_iter().unzip();
         let drawing = group_layout(device, "visible chunks", &drawing_entries());
         gpu.check()?;
         Ok(Self {

@@ -191,6 +191,8 @@ impl Exploration {
         let gpu_instances: Vec<GpuInstance> =
             instances.iter().map(|i| self.cull_instances(i)).collect();
         let grown = self.gpu_instances.replace(gpu, &gpu_instances)?;
+        let chunks = |instance: &Instance| self.known[instance.template.0 as usize].chunks;
+        self.chunks = instances.iter().map(|i| u64::from(chunks(i))).sum();
         self.instances = instances;
         self.edited = 0..0;
         self.changed(grown);

@@ -1,0 +1,31 @@
+//! Pipelines that are made side by side.
+
+use rayon::prelude::*;
+
+/// What `make` makes of 0 to `count` - 1, on all cores. Drivers of graphics hardware compile a pipeline while it is
+/// made, each for up to a second.
+pub(crate) fn side_by_side<T: Send>(
+    count: usize,
+    make: impl Fn(usize) -> T + Send + Sync,
+) -> Vec<T> {
+    (0..count).into_par_iter().map(make).collect()
+}
+
+/// [`side_by_side`] for a number that is known.
+pub(crate) fn all_of<const N: usize, T: Send>(make: impl Fn(usize) -> T + Send + Sync) -> [T; N] {
+    let made: Option<[T; N]> = side_by_side(N, make).try_into().ok();
+    made.expect("as many as there are")
+}
+
+/// What `here` makes on this thread, and `there` on another meanwhile.
+pub(crate) fn beside<A, B: Send>(
+    here: impl FnOnce() -> A,
+    there: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    let mut made = None;
+    let own = rayon::in_place_scope(|scope| {
+        scope.spawn(|_| made = Some(there()));
+        here()
+    });
+    (own, made.expect("scopes wait for what they spawn"))
+}
