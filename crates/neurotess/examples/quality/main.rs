@@ -1,0 +1,88 @@
+//! What meshes are worth, a JSON object for each file: what `cargo xtask quality` makes a table of.
+//!
+//! ```text
+//! cargo run --release -p neurotess --example quality -- FILES…
+//! ```
+//!
+//! At levels 2 and 4: crossing pairs of facets within four radii of a fork, all of them, and facets folded by more than
+//! 120°. At level 4 also the volume, and the share of the area near forks that is off the branches' round cones.
+
+use std::path::Path;
+use std::time::Instant;
+
+use neurotess::formats::{ReadOptions, read};
+use neurotess::generate::{GenerateOptions, generate};
+use neurotess::mesh::{CoarseMesh, Role, SurfaceMesh, topology};
+use neurotess::refine::{LodCriterion, RefineOptions, Refinement, pack};
+
+use facets::{crossings, folded};
+use tree::Tree;
+
+mod facets;
+mod off;
+mod tree;
+
+/// Most patches of a part that is packed for the device.
+const MOST_PATCHES: usize = 1 << 20;
+/// Runs of which the fastest counts.
+const RUNS: usize = 3;
+
+#[expect(clippy::print_stdout, reason = "this is its output")]
+fn main() {
+    for file in std::env::args().skip(1) {
+        match figures(Path::new(&file)) {
+            Ok(line) => println!("{line}"),
+            Err(error) => println!(r#"{{"file": {file:?}, "error": {:?}}}"#, error.to_string()),
+        }
+    }
+}
+
+/// The figures of a file.
+fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
+    let morphology = read(file, &ReadOptions::default())?.morphology;
+    let (mut mesh, mut fastest) = (CoarseMesh::default(), f64::INFINITY);
+    for _ in 0..RUNS {
+        let clock = Instant::now();
+        mesh = generate(&morphology, &GenerateOptions::default())?.mesh;
+        fastest = fastest.min(clock.elapsed().as_secs_f64());
+    }
+    let tree = Tree::new(&morphology);
+    let mut line = format!(
+        r#"{{"file": {:?}, "points": {}, "seconds": {fastest}, "bytes": {}"#,
+        file.display().to_string(),
+        morphology.points.len(),
+        bytes_per_point(&mesh),
+    );
+    for level in [2, 4] {
+        let levels = LodCriterion::Homogeneous(level);
+        let refinement = Refinement::new(&mesh, levels, &RefineOptions::default());
+        let surface = SurfaceMesh::collect(&refinement);
+        let positions: Vec<_> = surface.vertices.iter().map(|v| v.position).collect();
+        let topology = topology(&positions, &surface.faces);
+        let closed = topology.closed && topology.oriented && topology.vertex_manifold;
+        let [near, all] = crossings(&positions, &surface.faces, &tree);
+        line += &format!(
+            r#", "closed_{level}": {closed}, "near_{level}": {near}, "pairs_{level}": {all}, "folded_{level}": {}"#,
+            folded(&positions, &surface.faces.triangles),
+        );
+        if level == 4 {
+            let (volume, area) = refinement.volume_and_area();
+            let off = off::share(&positions, &surface.faces.triangles, &tree);
+            line += &format!(r#", "volume": {volume}, "area": {area}, "off": {off}"#);
+        }
+    }
+    Ok(line + "}")
+}
+
+/// Bytes on the device for each tracing point outside somata.
+fn bytes_per_point(mesh: &CoarseMesh) -> f64 {
+    let keys = vec![0; mesh.tracing.len()];
+    let parts = pack(mesh, &keys, &[], MOST_PATCHES);
+    let words: usize = parts.iter().map(|part| part.packed.len()).sum();
+    let tracing = mesh.tracing.iter();
+    let points = tracing
+        .filter(|point| point.role != Role::Soma)
+        .count()
+        .max(1);
+    (4 * words) as f64 / points as f64
+}

@@ -1,0 +1,148 @@
+//! `cargo xtask quality`: what meshes of real cells are worth, as one table; and whether it got worse.
+//!
+//! Figures of surfaces are those of the example `quality` of the crate `neurotess`, those of meshes for simulations of
+//! `neurotess mesh --simulation`.
+
+mod cells;
+mod table;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, bail};
+use serde_json::{Value, json};
+
+use crate::steps::{self, Steps, cargo, output, root, target_folder};
+
+const USAGE: &str = "cargo xtask quality [--against BEFORE.json] [--page] [FILE…]";
+/// Where figures and table are written.
+const FOLDER: &str = "out/quality";
+
+/// What stands above the table of the page.
+const PREFACE: &str = include_str!("preface.md");
+
+/// What was asked for.
+#[derive(Default)]
+struct Asked {
+    /// Figures of another build, to compare with.
+    against: Option<PathBuf>,
+    /// Whether the table becomes `benchmarks/quality.md`.
+    page: bool,
+    files: Vec<PathBuf>,
+}
+
+/// Runs the command.
+pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result<()> {
+    let mut asked = Asked::default();
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--against" => asked.against = Some(arguments.next().context(USAGE)?.into()),
+            "--page" => asked.page = true,
+            option if option.starts_with('-') => bail!("{option}: not an option\n\n{USAGE}"),
+            file => asked.files.push(file.into()),
+        }
+    }
+    if asked.files.is_empty() {
+        asked.files = cells::files()?;
+    }
+    let before: Option<Value> = match &asked.against {
+        Some(file) => Some(read(file)?),
+        None => None,
+    };
+    let folder = root().join(FOLDER);
+    fs::create_dir_all(&folder)?;
+    let mut rows = Vec::new();
+    let mut steps = Steps::default();
+    steps.step("build", build)?;
+    steps.step("surfaces", || {
+        rows = surfaces(&asked.files)?;
+        Ok(format!("{} cells", rows.len()))
+    })?;
+    steps.step("simulation", || {
+        for (row, file) in rows.iter_mut().zip(&asked.files) {
+            row["simulation"] = simulation(file, &folder)?;
+        }
+        Ok("a mesh for simulations of each".into())
+    })?;
+    let commit = output(
+        Command::new("git")
+            .current_dir(root())
+            .args(["describe", "--always", "--dirty"]),
+    )?;
+    let figures = json!({ "commit": commit.trim(), "cells": rows });
+    fs::write(
+        folder.join("quality.json"),
+        serde_json::to_string_pretty(&figures)?,
+    )?;
+    let text = format!("{PREFACE}\n{}", table::table(&figures));
+    fs::write(folder.join("quality.md"), &text)?;
+    if asked.page {
+        fs::write(root().join("benchmarks/quality.md"), &text)?;
+    }
+    println!("\n{}", table::table(&figures));
+    println!("{FOLDER}/quality.json has the figures");
+    let Some(before) = before else { return Ok(()) };
+    let compared = table::compare(&before, &figures);
+    println!("\n{}", compared.text);
+    match compared.worse.as_slice() {
+        [] => Ok(()),
+        worse => bail!("worse than before: {}", worse.join(", ")),
+    }
+}
+
+fn read(file: &Path) -> anyhow::Result<Value> {
+    let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+    Ok(serde_json::from_str(&text)?)
+}
+
+fn build() -> anyhow::Result<String> {
+    steps::run(&mut cargo("build --release --locked -p neurotess-cli"))?;
+    steps::run(&mut cargo(
+        "build --release --locked -p neurotess --example quality",
+    ))?;
+    Ok("the program, and what measures surfaces".into())
+}
+
+fn surfaces(files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
+    let program = target_folder()?.join("release/examples/quality");
+    let printed = output(Command::new(program).args(files))?;
+    let rows: Result<Vec<Value>, _> = printed.lines().map(serde_json::from_str).collect();
+    let rows = rows?;
+    if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
+        bail!("{}: {}", row["file"], row["error"]);
+    }
+    Ok(rows)
+}
+
+/// What the command says of a mesh for simulations.
+fn simulation(file: &Path, folder: &Path) -> anyhow::Result<Value> {
+    let program = target_folder()?.join("release/neurotess");
+    let mut command = Command::new(program);
+    command
+        .arg("mesh")
+        .arg(file)
+        .args(["--simulation", "--json", "--force", "--quiet", "-o"])
+        .arg(folder.join("simulation.ply"));
+    let printed = command.output().context("neurotess")?;
+    let Ok(report) = serde_json::from_slice::<Value>(&printed.stdout) else {
+        let said = String::from_utf8_lossy(&printed.stderr);
+        return Ok(json!({ "error": said.trim() }));
+    };
+    let cell = &report[0];
+    let number = |value: &Value| value.as_i64().unwrap_or_default();
+    let seconds: f64 = cell["seconds"].as_object().map_or(0.0, |stages| {
+        stages.values().filter_map(Value::as_f64).sum()
+    });
+    Ok(json!({
+        "closed": cell["closed"],
+        "pairs": cell["crossings"]["pairs"],
+        "pieces": cell["components"],
+        "genus": number(&cell["components"]) - number(&cell["euler"]) / 2,
+        "angle_p1": cell["quality"]["min_angle_p1"],
+        "thin_gaps": cell["quality"]["thin_gaps"],
+        "volume": cell["volume"],
+        "triangles": cell["triangles"],
+        "seconds": seconds,
+    }))
+}

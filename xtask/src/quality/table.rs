@@ -1,0 +1,185 @@
+//! The table of figures, and what two of them come to.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::Value;
+
+/// How much worse a sum may be.
+const WORSE: f64 = 1.05;
+
+/// Figures whose sums are compared, with how much of them is a trifle in all cells together.
+const COMPARED: [(&str, f64); 8] = [
+    ("near_2", 5.0),
+    ("pairs_2", 5.0),
+    ("folded_2", 5.0),
+    ("near_4", 5.0),
+    ("pairs_4", 5.0),
+    ("folded_4", 5.0),
+    ("off", 1e-3),
+    ("bytes", 0.1),
+];
+
+/// Markdown, a row for each cell and one of sums.
+pub(super) fn table(figures: &Value) -> String {
+    let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
+    text += "| cell | points | near, all, folded: 2 | 4 | off % | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
+    text +=
+        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    for cell in cells(figures) {
+        let file = cell["file"].as_str().unwrap_or_default();
+        let name = Path::new(file).file_stem().unwrap_or_default();
+        let name: String = name.to_string_lossy().chars().take(20).collect();
+        let closed = [&cell["closed_2"], &cell["closed_4"]];
+        let open = match closed.iter().all(|closed| closed.as_bool() == Some(true)) {
+            true => "",
+            false => " **open**",
+        };
+        let simulation = &cell["simulation"];
+        let of = |key: &str| number(&simulation[key]);
+        let _ = writeln!(
+            text,
+            "| {name}{open} | {} | {} | {} | {:.2} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
+            cell["points"],
+            counts(cell, 2),
+            counts(cell, 4),
+            100.0 * number(&cell["off"]),
+            number(&cell["volume"]),
+            number(&cell["bytes"]),
+            1e3 * number(&cell["seconds"]),
+            told(simulation),
+            of("pieces"),
+            of("genus"),
+            of("angle_p1"),
+            of("seconds"),
+        );
+    }
+    let all = |key: &str| sum(figures, key);
+    let cells = cells(figures).len().max(1) as f64;
+    let counts = |level: u32| {
+        ["near", "pairs", "folded"]
+            .map(|what| all(&format!("{what}_{level}")).to_string())
+            .join(", ")
+    };
+    let _ = writeln!(
+        text,
+        "| **all** (off, bytes: mean) | {} | {} | {} | {:.2} | {:.0} | {:.1} | {:.0} | | | | |",
+        all("points"),
+        counts(2),
+        counts(4),
+        100.0 * all("off") / cells,
+        all("volume"),
+        all("bytes") / cells,
+        1e3 * all("seconds"),
+    );
+    text
+}
+
+/// Crossing pairs of a mesh for simulations, or that there is none.
+fn told(simulation: &Value) -> String {
+    match (&simulation["pairs"], simulation["closed"].as_bool()) {
+        (Value::Number(pairs), Some(true)) => pairs.to_string(),
+        (Value::Number(pairs), _) => format!("{pairs} **open**"),
+        _ => "**none**".into(),
+    }
+}
+
+fn counts(cell: &Value, level: u32) -> String {
+    ["near", "pairs", "folded"]
+        .map(|what| cell[format!("{what}_{level}")].to_string())
+        .join(", ")
+}
+
+fn cells(figures: &Value) -> &[Value] {
+    figures["cells"].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_default()
+}
+
+fn sum(figures: &Value, key: &str) -> f64 {
+    cells(figures).iter().map(|cell| number(&cell[key])).sum()
+}
+
+/// Two tables beside one another.
+pub(super) struct Compared {
+    pub(super) text: String,
+    /// What got worse.
+    pub(super) worse: Vec<String>,
+}
+
+/// Compares sums; a mesh that opens, or that solvers would not take any more, is worse, too.
+pub(super) fn compare(before: &Value, after: &Value) -> Compared {
+    let mut compared = Compared {
+        text: "| sum | before | after | ratio |\n| --- | ---: | ---: | ---: |\n".into(),
+        worse: Vec::new(),
+    };
+    for (key, trifle) in COMPARED {
+        let [was, is] = [before, after].map(|figures| sum(figures, key));
+        row(&mut compared.text, key, was, is);
+        if is > WORSE * was && is - was > trifle {
+            compared.worse.push(key.to_owned());
+        }
+    }
+    for key in ["volume", "seconds"] {
+        let [was, is] = [before, after].map(|figures| sum(figures, key));
+        row(&mut compared.text, key, was, is);
+    }
+    for (was, is) in cells(before).iter().zip(cells(after)) {
+        let opens = |key: &str| was[key].as_bool() == Some(true) && is[key].as_bool() != Some(true);
+        let of_simulation = |cell: &Value| {
+            let simulation = &cell["simulation"];
+            simulation["closed"].as_bool() == Some(true) && simulation["pairs"].as_i64() == Some(0)
+        };
+        if opens("closed_2") || opens("closed_4") {
+            compared.worse.push(format!("{} opens", is["file"]));
+        }
+        if of_simulation(was) && !of_simulation(is) {
+            compared
+                .worse
+                .push(format!("{} for simulations", is["file"]));
+        }
+    }
+    compared
+}
+
+fn row(text: &mut String, key: &str, was: f64, is: f64) {
+    let _ = writeln!(
+        text,
+        "| {key} | {was:.3} | {is:.3} | {:.3} |",
+        is / was.max(1e-12)
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn figures(folded: u32, closed: bool, pairs: u32) -> Value {
+        let simulation = json!({ "closed": true, "pairs": pairs });
+        let cell = json!({ "file": "a.swc", "folded_2": folded, "closed_2": closed, "simulation": simulation });
+        json!({ "commit": "abc", "cells": [cell] })
+    }
+
+    #[test]
+    fn worse_is_more_than_a_twentieth_an_open_mesh_or_a_crossing() {
+        let before = figures(1000, true, 0);
+        let worse = |after: &Value| compare(&before, after).worse;
+        assert!(worse(&figures(1049, true, 0)).is_empty());
+        assert_eq!(worse(&figures(1051, true, 0)), ["folded_2"]);
+        assert_eq!(worse(&figures(900, false, 0)), ["\"a.swc\" opens"]);
+        assert_eq!(worse(&figures(900, true, 1)), ["\"a.swc\" for simulations"]);
+    }
+
+    #[test]
+    fn trifles_are_none() {
+        assert!(
+            compare(&figures(0, true, 0), &figures(5, true, 0))
+                .worse
+                .is_empty()
+        );
+    }
+}
