@@ -36,6 +36,7 @@ mod in_unit;
 mod intersect;
 mod label;
 mod measure;
+pub mod palette;
 mod parting;
 mod placed;
 mod quality;
