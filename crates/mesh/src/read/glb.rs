@@ -1,4 +1,5 @@
-//! glTF 2.0: GLB, or JSON that embeds its data. All triangles of the scene, nodes transformed.
+//! glTF 2.0: GLB, or JSON that embeds its data. All triangles of the scene, nodes transformed. Primitives of a mesh
+//! that have the same attributes share their vertices, so that a mesh which is divided by material stays closed.
 
 use std::borrow::Cow;
 
@@ -91,6 +92,20 @@ fn data<'a>(buffer: &Value, binary: Option<&'a [u8]>) -> Result<Cow<'a, [u8]>, R
     decoded.ok_or_else(|| malformed(FilePosition::File, "a data URI", "base64"))
 }
 
+/// Vertices that several primitives of a mesh may have.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    attributes: &'a Value,
+    /// The number of the first.
+    first: u64,
+    /// None if they have no positions.
+    count: Option<usize>,
+}
+
+/// Different attributes in a mesh that are compared with those of the next primitive; files of thousands would make
+/// it slow.
+const MOST_SHARED: usize = 64;
+
 struct Scene<'a> {
     root: &'a Value,
     buffers: Vec<Cow<'a, [u8]>>,
@@ -119,8 +134,18 @@ impl Scene<'_> {
             let world_from_node = world_from_parent * parent_from_node(node);
             if let Some(number) = node["mesh"].as_u64() {
                 let shape = item(items(self.root, "meshes"), number, "mesh")?;
+                let mut read: Vec<Shared<'_>> = Vec::new();
                 for primitive in items(shape, "primitives") {
-                    self.primitive(primitive, world_from_node, mesh)?;
+                    let attributes = &primitive["attributes"];
+                    let known = read.iter().find(|shared| shared.attributes == attributes);
+                    let shared = match known {
+                        Some(&shared) => shared,
+                        None => self.vertices(attributes, world_from_node, mesh)?,
+                    };
+                    if known.is_none() && read.len() < MOST_SHARED {
+                        read.push(shared);
+                    }
+                    self.faces(primitive, shared, world_from_node, mesh)?;
                 }
             }
             let children = items(node, "children").iter().filter_map(Value::as_u64);
@@ -152,21 +177,24 @@ impl Scene<'_> {
             .collect()
     }
 
-    fn primitive(
+    /// Reads the vertices of a primitive; none if they have no positions.
+    fn vertices<'v>(
         &self,
-        primitive: &Value,
+        attributes: &'v Value,
         world_from_node: DMat4,
         mesh: &mut Builder,
-    ) -> Result<(), ReadError> {
-        let mode = primitive["mode"].as_u64().unwrap_or(TRIANGLES);
-        let first = mesh.vertex_count() as u64;
-        let attributes = &primitive["attributes"];
+    ) -> Result<Shared<'v>, ReadError> {
+        let mut shared = Shared {
+            attributes,
+            first: mesh.vertex_count() as u64,
+            count: None,
+        };
         let numbers = |name: &str, components: usize| match attributes[name].as_u64() {
             Some(accessor) => self.numbers(accessor, components).map(Some),
             None => Ok(None),
         };
         let Some(positions) = numbers("POSITION", 3)? else {
-            return Ok(());
+            return Ok(shared);
         };
         let normals = numbers("NORMAL", 3)?.unwrap_or_default();
         let own = [
@@ -199,9 +227,25 @@ impl Scene<'_> {
             mesh.vertex(FilePosition::File, position, vertex)?;
         }
 
+        shared.count = Some(positions.len());
+        Ok(shared)
+    }
+
+    /// Reads the faces of a primitive.
+    fn faces(
+        &self,
+        primitive: &Value,
+        Shared { first, count, .. }: Shared<'_>,
+        world_from_node: DMat4,
+        mesh: &mut Builder,
+    ) -> Result<(), ReadError> {
+        let Some(count) = count else {
+            return Ok(());
+        };
+        let mode = primitive["mode"].as_u64().unwrap_or(TRIANGLES);
         let corners = match primitive["indices"].as_u64() {
             Some(accessor) => self.numbers(accessor, 1)?,
-            None => (0..positions.len() as u32).map(f64::from).collect(),
+            None => (0..count as u32).map(f64::from).collect(),
         };
         // A mirrored node turns its faces round.
         let mirrored = world_from_node.determinant() < 0.0;

@@ -4,17 +4,29 @@
 //! bounds that glTF asks for are known only after it: the JSON comes first in the file, therefore
 //! it gets room for the longest numbers and is written last. Several surfaces follow one another in the
 //! binary chunk; nodes show each where it stands, as often as they like.
+//!
+//! A surface has a primitive for each type, with the material of the type; all share its vertices, so the mesh is
+//! closed by its indices. Which types there are is known when the vertices have been made. The JSON has room for
+//! [`ROOM`] to a surface, and if there are more, the file is written again with as much room as it needs. **Why not**
+//! look first: a pass over the vertices takes two fifths of writing.
 
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3, Vec3};
 use serde_json::{Value, json};
 
+use super::materials::type_color;
 use super::{File, WriteError, record, split};
-use crate::{Format, Surface};
+use crate::face_types::{TypesOfGroups, VertexTypes};
+use crate::palette::linear;
+use crate::{Faces, Format, Surface, region_name};
 
 /// Bytes of a vertex.
 const STRIDE: u64 = 40;
+
+/// Types of a surface that the JSON has room for in any case: as many as have names in SWC.
+const ROOM: usize = 5;
 
 /// Magic number, version and length; then the JSON chunk's length and type.
 const JSON_START: u64 = 20;
@@ -38,21 +50,28 @@ struct Span {
     first_index: u64,
     /// Of positions.
     bounds: [Vec3; 2],
+    /// Indices of each type, in the order of the primitives; none if there are no materials.
+    kinds: BTreeMap<i32, u64>,
 }
 
-pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
+pub(super) fn write(
+    surface: &dyn Surface,
+    materials: bool,
+    file: &mut File<'_>,
+) -> Result<(), WriteError> {
     let here = GlbNode {
         name: String::new(),
         surface: 0,
         world_from_surface: DAffine3::IDENTITY,
     };
-    write_all(&[surface], &[here], file)
+    write_all(&[surface], &[here], materials, file)
 }
 
 /// Writes surfaces with the nodes that show them.
 pub(super) fn write_all(
     surfaces: &[&dyn Surface],
     nodes: &[GlbNode],
+    materials: bool,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
     let mut spans = Vec::new();
@@ -60,59 +79,71 @@ pub(super) fn write_all(
     for surface in surfaces {
         let vertices = surface.vertex_count() as u64;
         let faces = surface.triangle_count() as u64 + 2 * surface.quad_count() as u64;
+        // As many as there is room for, with the longest name.
+        let kinds = (i32::MIN..).take(if materials { ROOM } else { 0 });
         spans.push(Span {
             vertices,
             first_vertex: binary,
             indices: 3 * faces,
             first_index: binary + STRIDE * vertices,
             bounds: [Vec3::ZERO; 2],
+            kinds: kinds.map(|kind| (kind, 3 * faces)).collect(),
         });
         binary += STRIDE * vertices + 12 * faces;
     }
     let origins: Vec<DVec3> = surfaces.iter().map(|surface| surface.origin()).collect();
-
-    // Six bounds of at most 25 characters instead of `0.0`; then to a multiple of 4.
-    let longest = document(&spans, &origins, nodes).to_string().len() + 6 * 22 * spans.len();
-    let json_bytes = (longest as u64).next_multiple_of(4);
-    let chunk = if binary > 0 { 8 } else { 0 };
-    let size = JSON_START + json_bytes + chunk + binary;
-    let Ok(total) = u32::try_from(size) else {
-        return Err(WriteError::TooLarge {
-            format: Format::Glb,
-            size,
-            unit: "bytes",
-        });
-    };
-
-    let start = JSON_START + json_bytes + chunk;
-    for (surface, span) in surfaces.iter().zip(&mut spans) {
-        span.bounds = write_surface(*surface, start, span, file)?;
+    loop {
+        // Six bounds of at most 25 characters instead of `0.0`; then to a multiple of 4.
+        let longest = document(&spans, &origins, nodes).to_string().len() + 6 * 22 * spans.len();
+        let json_bytes = (longest as u64).next_multiple_of(4);
+        let chunk = if binary > 0 { 8 } else { 0 };
+        let start = JSON_START + json_bytes + chunk;
+        let size = start + binary;
+        let Ok(total) = u32::try_from(size) else {
+            return Err(WriteError::TooLarge {
+                format: Format::Glb,
+                size,
+                unit: "bytes",
+            });
+        };
+        for (surface, span) in surfaces.iter().zip(&mut spans) {
+            write_surface(*surface, start, materials, span, file)?;
+        }
+        let json = document(&spans, &origins, nodes).to_string();
+        if json.len() as u64 > json_bytes {
+            continue;
+        }
+        let mut head = Vec::new();
+        head.extend_from_slice(&record![20;
+            u32::from_le_bytes(*b"glTF"), 2u32, total, json_bytes as u32,
+            u32::from_le_bytes(*b"JSON")]);
+        head.extend_from_slice(json.as_bytes());
+        head.resize((JSON_START + json_bytes) as usize, b' ');
+        if binary > 0 {
+            head.extend_from_slice(&record![8; binary as u32, u32::from_le_bytes(*b"BIN\0")]);
+        }
+        file.put(&mut 0, &head)?;
+        return file.go(size);
     }
-    let mut head = Vec::new();
-    head.extend_from_slice(&record![20;
-        u32::from_le_bytes(*b"glTF"), 2u32, total, json_bytes as u32,
-        u32::from_le_bytes(*b"JSON")]);
-    head.extend_from_slice(document(&spans, &origins, nodes).to_string().as_bytes());
-    head.resize((JSON_START + json_bytes) as usize, b' ');
-    if binary > 0 {
-        head.extend_from_slice(&record![8; binary as u32, u32::from_le_bytes(*b"BIN\0")]);
-    }
-    file.put(&mut 0, &head)?;
-    file.go(size)
 }
 
-/// Writes the arrays of a surface and gives the bounds of its positions.
+/// Writes the arrays of a surface, and tells the span of the bounds of its positions and of its types.
 fn write_surface(
     surface: &dyn Surface,
     start: u64,
-    span: &Span,
+    materials: bool,
+    span: &mut Span,
     file: &mut File<'_>,
-) -> Result<[Vec3; 2], WriteError> {
+) -> Result<(), WriteError> {
     let bounds = Mutex::new([Vec3::INFINITY, Vec3::NEG_INFINITY]);
-    file.vertices(
+    let types = TypesOfGroups::default();
+    file.vertices_of_blocks(
         surface,
         &mut [start + span.first_vertex],
-        |group, [bytes]| {
+        |blocks, group, [bytes]| {
+            if materials {
+                types.add(&blocks, group);
+            }
             let mut mine = [Vec3::INFINITY, Vec3::NEG_INFINITY];
             bytes.reserve(STRIDE as usize * group.len());
             for v in group {
@@ -126,18 +157,107 @@ fn write_surface(
             *bounds = [bounds[0].min(mine[0]), bounds[1].max(mine[1])];
         },
     )?;
+    span.bounds = bounds.into_inner().unwrap_or_else(PoisonError::into_inner);
+    span.kinds.clear();
+    if materials {
+        let runs = runs(surface, &types.finish(), file)?;
+        for &(kind, count) in runs.iter().flatten() {
+            *span.kinds.entry(kind).or_default() += 3 * count;
+        }
+        return write_by_type(surface, &runs, start, span, file);
+    }
     file.faces(
         surface,
         &mut [start + span.first_index],
         |group, [bytes]| {
-            let quads = group.quads.iter().flat_map(split);
             bytes.reserve(12 * (group.triangles.len() + 2 * group.quads.len()));
-            for [a, b, c] in group.triangles.iter().copied().chain(quads) {
+            for [a, b, c] in halved(group) {
                 bytes.extend_from_slice(&record![12; a, b, c]);
             }
         },
+    )
+}
+
+/// Triangles with the same type, one after another: the type, and how many.
+type KindRun = (i32, u64);
+
+/// The types of the triangles of each group. They are looked up once, and there are few runs.
+fn runs(
+    surface: &dyn Surface,
+    types: &VertexTypes,
+    file: &mut File<'_>,
+) -> Result<Vec<Vec<KindRun>>, WriteError> {
+    let mut all = Vec::new();
+    file.faces_as(
+        surface,
+        Vec::new,
+        |group, runs: &mut Vec<KindRun>| {
+            runs.clear();
+            let mut ask = types.ask();
+            for triangle in halved(group) {
+                let here = ask.triangle(triangle).kind;
+                match runs.last_mut() {
+                    Some((kind, count)) if *kind == here => *count += 1,
+                    _ => runs.push((here, 1)),
+                }
+            }
+        },
+        |_, runs| {
+            all.push(runs.clone());
+            Ok(())
+        },
     )?;
-    Ok(bounds.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(all)
+}
+
+/// Writes the indices of each type behind those of the one before.
+fn write_by_type(
+    surface: &dyn Surface,
+    runs: &[Vec<KindRun>],
+    start: u64,
+    span: &Span,
+    file: &mut File<'_>,
+) -> Result<(), WriteError> {
+    let mut next = start + span.first_index;
+    let mut places = BTreeMap::new();
+    for (&kind, &indices) in &span.kinds {
+        places.insert(kind, next);
+        next += 4 * indices;
+    }
+    let mut groups = runs.iter();
+    file.faces_as(
+        surface,
+        Vec::new,
+        |group, bytes: &mut Vec<u8>| {
+            bytes.clear();
+            bytes.reserve(12 * (group.triangles.len() + 2 * group.quads.len()));
+            for [a, b, c] in halved(group) {
+                bytes.extend_from_slice(&record![12; a, b, c]);
+            }
+        },
+        |file, bytes| {
+            // Types may change with each triangle of other people's meshes: each is written once for a group.
+            let mut of_kinds: BTreeMap<i32, Vec<u8>> = BTreeMap::new();
+            let mut rest = &bytes[..];
+            for &(kind, count) in groups.next().into_iter().flatten() {
+                let (run, behind) = rest.split_at(rest.len().min(12 * count as usize));
+                of_kinds.entry(kind).or_default().extend_from_slice(run);
+                rest = behind;
+            }
+            for (kind, bytes) in of_kinds {
+                if let Some(place) = places.get_mut(&kind) {
+                    file.put(place, &bytes)?;
+                }
+            }
+            Ok(())
+        },
+    )
+}
+
+/// All triangles of a group, halves of quads last.
+fn halved(group: &Faces) -> impl Iterator<Item = [u32; 3]> {
+    let halves = group.quads.iter().flat_map(split);
+    group.triangles.iter().copied().chain(halves)
 }
 
 /// The JSON. Surfaces without vertices have no mesh and no nodes, since accessors must not be empty.
@@ -161,7 +281,7 @@ fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
         .iter()
         .map(|s| STRIDE * s.vertices + 4 * s.indices)
         .sum();
-    json!({
+    let mut root = json!({
         "asset": asset,
         "scene": 0,
         "scenes": [{ "nodes": (0..shown.len()).collect::<Vec<_>>() }],
@@ -170,7 +290,12 @@ fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
         "accessors": arrays.accessors,
         "bufferViews": arrays.views,
         "buffers": [{ "byteLength": bytes }],
-    })
+    });
+    // A list must not be empty.
+    if !arrays.materials.is_empty() {
+        root["materials"] = json!(arrays.materials);
+    }
+    root
 }
 
 fn node_of(node: &GlbNode, mesh: usize, origin: DVec3) -> Value {
@@ -193,6 +318,9 @@ struct Arrays {
     meshes: Vec<Value>,
     accessors: Vec<Value>,
     views: Vec<Value>,
+    materials: Vec<Value>,
+    /// The material of each type.
+    of_kinds: BTreeMap<i32, usize>,
 }
 
 impl Arrays {
@@ -217,26 +345,67 @@ impl Arrays {
         let [low, high] = span.bounds;
         self.accessors[first]["min"] = json!(low.to_array());
         self.accessors[first]["max"] = json!(high.to_array());
-        let mut primitive = json!({
-            "attributes": {
-                "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
-                "_SECTION": first + 4, "_RADIUS": first + 5,
-            },
-            "mode": if span.indices > 0 { TRIANGLES } else { POINTS },
-        });
+        let primitive = |indices: Option<usize>, material: Option<usize>| {
+            let mut primitive = json!({
+                "attributes": {
+                    "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
+                    "_SECTION": first + 4, "_RADIUS": first + 5,
+                },
+                "mode": if indices.is_some() { TRIANGLES } else { POINTS },
+            });
+            if let Some(indices) = indices {
+                primitive["indices"] = json!(indices);
+            }
+            if let Some(material) = material {
+                primitive["material"] = json!(material);
+            }
+            primitive
+        };
+        let mut primitives = Vec::new();
         if span.indices > 0 {
-            primitive["indices"] = json!(self.accessors.len());
-            self.accessors.push(json!({
-                "bufferView": self.views.len(), "componentType": UNSIGNED_INT,
-                "count": span.indices, "type": "SCALAR",
-            }));
+            let view = self.views.len();
             self.views.push(json!({
                 "buffer": 0, "byteOffset": span.first_index, "byteLength": 4 * span.indices,
                 "target": ELEMENT_ARRAY_BUFFER,
             }));
+            if span.kinds.is_empty() {
+                primitives.push(primitive(Some(self.indices(view, 0, span.indices)), None));
+            }
+            let mut offset = 0;
+            for (&kind, &count) in &span.kinds {
+                let indices = self.indices(view, offset, count);
+                primitives.push(primitive(Some(indices), Some(self.material(kind))));
+                offset += 4 * count;
+            }
+        } else {
+            primitives.push(primitive(None, None));
         }
-        self.meshes.push(json!({ "primitives": [primitive] }));
+        self.meshes.push(json!({ "primitives": primitives }));
         Some(self.meshes.len() - 1)
+    }
+
+    /// The number of an accessor of indices.
+    fn indices(&mut self, view: usize, offset: u64, count: u64) -> usize {
+        self.accessors.push(json!({
+            "bufferView": view, "byteOffset": offset, "componentType": UNSIGNED_INT,
+            "count": count, "type": "SCALAR",
+        }));
+        self.accessors.len() - 1
+    }
+
+    /// The number of a type's material. Tracings of membranes are no metal, and shine little.
+    fn material(&mut self, kind: i32) -> usize {
+        *self.of_kinds.entry(kind).or_insert_with(|| {
+            // Finer than 8 bits, but for the darkest.
+            let [r, g, b] = linear(type_color(kind)).map(|light| (f64::from(light) * 1e4).round() / 1e4);
+            self.materials.push(json!({
+                "name": region_name(kind),
+                "pbrMetallicRoughness": {
+                    "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7,
+                },
+            }));
+            self.materials.len() - 1
+        })
     }
 }
 

@@ -9,6 +9,7 @@
 pub(crate) mod corners;
 mod glb;
 mod in_order;
+mod materials;
 mod msh;
 mod msh2;
 mod obj;
@@ -19,7 +20,10 @@ mod tetgen;
 mod vtu;
 
 pub use glb::GlbNode;
+pub use materials::WriteOptions;
+pub use obj::obj_materials;
 
+use std::collections::BTreeSet;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -81,9 +85,9 @@ pub enum WriteError {
 /// | format | encoding | positions | attributes | quads |
 /// | --- | --- | --- | --- | --- |
 /// | PLY | binary, little endian | f32; f64 if the origin is not zero | all | kept |
-/// | OBJ | text | shortest that reads back exactly | normals | kept |
+/// | OBJ | text | shortest that reads back exactly | normals; type of each face | kept |
 /// | STL | binary | f32 | facet normals | split |
-/// | GLB | binary | f32, the origin is the node's translation | all | split |
+/// | GLB | binary | f32, the origin is the node's translation | all; a material for each type | split |
 /// | OFF | text | shortest that reads back exactly | none | kept |
 /// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all | kept |
 /// | MSH | binary, little endian | f64 | type and section of each face | split |
@@ -98,17 +102,33 @@ pub fn write<W: Write + Seek>(
     format: Format,
     out: &mut W,
 ) -> Result<(), WriteError> {
+    write_with(surface, format, &WriteOptions::default(), out).map(drop)
+}
+
+/// [`write()`] with options. Gives the types of the faces, of which an OBJ's file of materials must tell; those of
+/// other formats are left out.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_with<W: Write + Seek>(
+    surface: &dyn Surface,
+    format: Format,
+    options: &WriteOptions,
+    out: &mut W,
+) -> Result<BTreeSet<i32>, WriteError> {
     if surface.vertex_count() > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(surface.vertex_count()));
     }
     let watched = Watched::new(surface);
     let surface: &dyn Surface = &watched;
     let mut file = File::begin(out)?;
+    let mut kinds = BTreeSet::new();
     match format {
         Format::Ply => ply::write(surface, &mut file),
-        Format::Obj => obj::write(surface, &mut file),
+        Format::Obj => obj::write(surface, options.material_file.as_deref(), &mut file)
+            .map(|found| kinds = found),
         Format::Stl => stl::write(surface, &mut file),
-        Format::Glb => glb::write(surface, &mut file),
+        Format::Glb => glb::write(surface, options.glb_materials, &mut file),
         Format::Off => off::write(surface, &mut file),
         Format::Vtu => vtu::write(surface, &mut file),
         Format::Msh => msh::write(surface, &mut file),
@@ -117,7 +137,8 @@ pub fn write<W: Write + Seek>(
         Format::Smesh => tetgen::write_smesh(surface, &mut file),
     }?;
     file.out.flush()?;
-    Ok(watched.check()?)
+    watched.check()?;
+    Ok(kinds)
 }
 
 /// Writes several surfaces as one GLB, each shown by nodes: a surface that stands in many places is in the
@@ -128,6 +149,7 @@ pub fn write<W: Write + Seek>(
 pub fn write_glb<W: Write + Seek>(
     surfaces: &[&dyn Surface],
     nodes: &[GlbNode],
+    options: &WriteOptions,
     out: &mut W,
 ) -> Result<(), WriteError> {
     let most = surfaces.iter().map(|surface| surface.vertex_count()).max();
@@ -143,7 +165,7 @@ pub fn write_glb<W: Write + Seek>(
         .map(|surface| surface as &dyn Surface)
         .collect();
     let mut file = File::begin(out)?;
-    glb::write_all(&surfaces, nodes, &mut file)?;
+    glb::write_all(&surfaces, nodes, options.glb_materials, &mut file)?;
     file.out.flush()?;
     for surface in &watched {
         surface.check()?;
@@ -242,26 +264,44 @@ impl<'a> File<'a> {
         places: &mut [u64; N],
         encode: impl Fn(&Faces, &mut [Vec<u8>; N]) + Sync,
     ) -> Result<(), WriteError> {
+        self.faces_as(
+            surface,
+            || [const { Vec::new() }; N],
+            |group, buffers| {
+                buffers.iter_mut().for_each(Vec::clear);
+                encode(group, buffers);
+            },
+            |file, buffers| file.put_all(places, buffers),
+        )
+    }
+
+    /// Makes something of all faces, group by group, and takes it in order. `make` gets what `new` gave, or what it
+    /// made of an earlier group.
+    fn faces_as<T: Send>(
+        &mut self,
+        surface: &dyn Surface,
+        new: impl Fn() -> T + Sync,
+        make: impl Fn(&Faces, &mut T) + Sync,
+        mut take: impl FnMut(&mut Self, &T) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
         let announced = (surface.triangle_count(), surface.quad_count());
         let groups = groups(surface.face_blocks(), announced.0 + announced.1);
         let spare = Mutex::new(Vec::new());
-        let encoded = |blocks: &Range<usize>| {
-            let new = || (Faces::default(), [const { Vec::new() }; N]);
-            let (mut group, mut buffers) = taken_from(&spare, new);
+        let made = |blocks: &Range<usize>| {
+            let (mut group, mut of_group) = taken_from(&spare, || (Faces::default(), new()));
             group.triangles.clear();
             group.quads.clear();
-            buffers.iter_mut().for_each(Vec::clear);
             for block in blocks.clone() {
                 surface.faces(block, &mut group);
             }
-            encode(&group, &mut buffers);
-            (group, buffers)
+            make(&group, &mut of_group);
+            (group, of_group)
         };
         let mut found = (0, 0);
-        in_order(&groups, encoded, |(group, buffers)| {
+        in_order(&groups, made, |(group, of_group)| {
             found = (found.0 + group.triangles.len(), found.1 + group.quads.len());
-            self.put_all(places, &buffers)?;
-            lock(&spare).push((group, buffers));
+            take(self, &of_group)?;
+            lock(&spare).push((group, of_group));
             Ok(())
         })?;
         agree("triangles", announced.0, found.0)?;

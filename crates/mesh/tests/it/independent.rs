@@ -1,11 +1,13 @@
 //! Our files in the hands of others: trimesh, meshio, pygltflib, Gmsh and TetGen must read what we wrote.
 
+use std::io::Cursor;
 use std::path::Path;
 use std::process::Command;
 
-use crate::shapes::{torus, written};
+use crate::shapes::{neuron, torus, written};
 use glam::DVec3;
-use neurotess_mesh::{Format, SurfaceMesh};
+use neurotess_mesh::palette::{Palette, linear};
+use neurotess_mesh::{Format, SurfaceMesh, WriteOptions, obj_materials, region_name, write_with};
 use neurotess_testing::python_with;
 use serde_json::Value;
 
@@ -33,11 +35,21 @@ fn judge(python: &Path, flag: Option<&str>, name: &str, mesh: &SurfaceMesh) -> V
         std::fs::write(&path, written(mesh, format)).expect("written");
         path
     });
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/read_meshes.py");
+    run(
+        python,
+        "read_meshes.py",
+        flag.map(Path::new)
+            .into_iter()
+            .chain(files.iter().map(|file| &**file)),
+    )
+}
+
+/// What a script prints of some files.
+fn run<'a>(python: &Path, script: &str, arguments: impl Iterator<Item = &'a Path>) -> Vec<Value> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
     let output = Command::new(python)
-        .arg(script)
-        .args(flag)
-        .args(files)
+        .arg(folder.join(script))
+        .args(arguments.map(Path::as_os_str))
         .output()
         .expect("Python runs");
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -138,6 +150,74 @@ fn others_read_what_we_write() {
         let results = judge(&python, None, "triangles", &triangles);
         assert_eq!(results.len(), 12);
         compare(&triangles, &results);
+    }
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::full, python))]
+fn others_see_the_colors_of_types() {
+    let python = python_with("trimesh").expect("the test has needs(python)");
+    let mut mesh = neuron(DVec3::ZERO);
+    for [a, b, c, d] in std::mem::take(&mut mesh.faces.quads) {
+        mesh.faces.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let options = WriteOptions {
+        material_file: Some("colored.mtl".into()),
+        ..WriteOptions::default()
+    };
+    let mut colored = Cursor::new(Vec::new());
+    let kinds = write_with(&mesh, Format::Obj, &options, &mut colored).expect("written");
+    let files = ["plain.obj", "colored.obj", "cell.glb"].map(at);
+    std::fs::write(&files[0], written(&mesh, Format::Obj)).expect("written");
+    std::fs::write(&files[1], colored.into_inner()).expect("written");
+    std::fs::write(at("colored.mtl"), obj_materials(&kinds)).expect("written");
+    std::fs::write(&files[2], written(&mesh, Format::Glb)).expect("written");
+    let results = run(
+        &python,
+        "read_materials.py",
+        files.iter().map(|file| &**file),
+    );
+    let by = results
+        .iter()
+        .map(|found| [&found["file"], &found["reader"]].map(|name| name.as_str().expect("a name")));
+    let by: Vec<_> = by.collect();
+    let (trimesh, meshio) = ("trimesh", "meshio");
+    assert_eq!(
+        by,
+        [
+            ["plain.obj", trimesh],
+            ["plain.obj", meshio],
+            ["colored.obj", trimesh],
+            ["colored.obj", meshio],
+            ["cell.glb", trimesh]
+        ]
+    );
+    for (found, whole) in results.iter().zip([true, true, false, true, false]) {
+        assert_eq!(
+            (&found["watertight"], &found["merged"]),
+            (&whole.into(), &true.into()),
+            "{found}"
+        );
+        if whole {
+            assert_eq!(found["vertices"], mesh.vertices.len(), "{found}");
+        }
+    }
+    for (found, is_linear) in [(&results[2], false), (&results[4], true)] {
+        let materials = found["materials"].as_object().expect("an object");
+        assert_eq!(materials.len(), 4);
+        for kind in 1..=4 {
+            let rgb = Palette::default().of_type(kind);
+            let of = &materials[&*region_name(kind)][0];
+            for (n, light) in linear(rgb).into_iter().enumerate() {
+                let expected = if is_linear {
+                    255.0 * f64::from(light)
+                } else {
+                    f64::from(rgb[n])
+                };
+                assert_near(&of[n], expected, 1.0, "color");
+            }
+        }
     }
 }
 

@@ -4,6 +4,8 @@ mod fuzz;
 mod independent;
 mod intersect;
 mod legacy;
+mod materials;
+mod parts;
 mod readers;
 mod round_trip;
 mod scenes;

@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Seek, SeekFrom, Write};
 
-use crate::shapes::{torus, written};
+use crate::shapes::{Blocks, torus, written};
 use glam::DVec3;
 use neurotess_mesh::{
     Faces, Format, Surface, SurfaceMesh, SurfaceVertex, WriteError, check, merge_identical,
@@ -143,50 +143,6 @@ fn writing_begins_where_the_stream_is() {
     }
 }
 
-/// Many blocks of few vertices and faces: as a surface refined patch by patch.
-struct Blocks(SurfaceMesh, usize);
-
-impl Surface for Blocks {
-    fn origin(&self) -> DVec3 {
-        self.0.origin
-    }
-    fn vertex_count(&self) -> usize {
-        self.0.vertices.len()
-    }
-    fn triangle_count(&self) -> usize {
-        self.0.faces.triangles.len()
-    }
-    fn quad_count(&self) -> usize {
-        self.0.faces.quads.len()
-    }
-    fn vertex_blocks(&self) -> usize {
-        self.0.vertices.len().div_ceil(self.1)
-    }
-    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
-        out.extend(self.0.vertices.iter().skip(block * self.1).take(self.1));
-    }
-    fn face_blocks(&self) -> usize {
-        self.0
-            .faces
-            .quads
-            .len()
-            .max(self.0.faces.triangles.len())
-            .div_ceil(self.1)
-    }
-    fn faces(&self, block: usize, out: &mut Faces) {
-        out.triangles.extend(
-            self.0
-                .faces
-                .triangles
-                .iter()
-                .skip(block * self.1)
-                .take(self.1),
-        );
-        out.quads
-            .extend(self.0.faces.quads.iter().skip(block * self.1).take(self.1));
-    }
-}
-
 #[neurotess_testing::test]
 fn blocks_leave_no_trace_in_binary_files() {
     let mesh = torus(300, 200, DVec3::ZERO);
@@ -201,7 +157,13 @@ fn blocks_leave_no_trace_in_binary_files() {
 #[neurotess_testing::test]
 fn blocks_leave_no_trace_in_files_with_types() {
     let mesh = split(&torus(300, 200, DVec3::new(9000.5, 0.0, -1.0)));
-    for format in [Format::Msh, Format::Poly, Format::Smesh] {
+    for format in [
+        Format::Obj,
+        Format::Glb,
+        Format::Msh,
+        Format::Poly,
+        Format::Smesh,
+    ] {
         let mut file = Cursor::new(Vec::new());
         write(&Blocks(mesh.clone(), 77), format, &mut file).expect("memory");
         assert!(file.into_inner() == written(&mesh, format), "{format}");

@@ -53,7 +53,14 @@ GLTF = ["_TYPE", "_POINT", "_SECTION", "_RADIUS"]
 
 def with_trimesh(path):
     merge = path.suffix == ".stl"
-    mesh = trimesh.load(path, process=merge, force="mesh")
+    if path.suffix == ".glb":
+        # A mesh for each type; each has all vertices.
+        parts = trimesh.load(path, process=False).dump()
+        assert all((part.vertices == parts[0].vertices).all() for part in parts)
+        mesh = parts[0]
+        mesh.faces = numpy.concatenate([part.faces for part in parts])
+    else:
+        mesh = trimesh.load(path, process=merge, force="mesh")
     result = described(mesh, len(mesh.faces), 0)
     if path.suffix == ".glb":
         result["attributes"] = ranges(mesh.vertex_attributes, GLTF)
@@ -82,7 +89,9 @@ def with_pygltflib(path):
     """Reads accessors by their definition in the glTF specification."""
     model = pygltflib.GLTF2().load(str(path))
     blob = model.binary_blob()
-    primitive = model.meshes[0].primitives[0]
+    primitives = model.meshes[0].primitives
+    primitive = primitives[0]
+    assert all(vars(other.attributes) == vars(primitive.attributes) for other in primitives)
     translation = numpy.array(model.nodes[0].translation or [0, 0, 0])
 
     def numbers(index):
@@ -98,7 +107,7 @@ def with_pygltflib(path):
     bounds = model.accessors[primitive.attributes.POSITION]
     assert positions.min(axis=0).tolist() == bounds.min, "min"
     assert positions.max(axis=0).tolist() == bounds.max, "max"
-    triangles = numbers(primitive.indices).reshape(-1, 3)
+    triangles = numpy.concatenate([numbers(one.indices) for one in primitives]).reshape(-1, 3)
     result = judged(positions + translation, triangles, numpy.zeros((0, 4), dtype=int))
     own = {name: numbers(getattr(primitive.attributes, name)) for name in GLTF}
     result["attributes"] = ranges(own, GLTF)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use neurotess::circuit::{Circuit, Instance};
-use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
+use neurotess::mesh::{Format, GlbNode, Surface, WriteError, WriteOptions, write_glb};
 use serde::Serialize;
 
 use super::args::MeshArgs;
@@ -83,7 +83,7 @@ pub(super) fn run(
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;
-    write_glb(&surfaces, &nodes, output.file()).map_err(|e| match e {
+    write_glb(&surfaces, &nodes, &WriteOptions::default(), output.file()).map_err(|e| match e {
         WriteError::Io(e) => OutputError::broken(out, e),
         other => OutputError::broken(out, std::io::Error::other(other)),
     })?;
