@@ -13,10 +13,18 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What a worker may do with a cell.
 pub(crate) enum Claim {
-    /// Write it into this output.
-    Ours(Output),
+    /// Write it.
+    Ours(Claimed),
     /// Keep it: another run has written it meanwhile.
     Done,
+}
+
+/// What may be written.
+pub(crate) struct Claimed {
+    /// The file; one that is written in parts only holds its name meanwhile.
+    pub(crate) output: Output,
+    /// Whether files that belong to it may be replaced.
+    pub(crate) replace: bool,
 }
 
 /// Claims an output. With `--resume` (`made` and `resume`), waits for another run that has claimed
@@ -28,7 +36,11 @@ pub(crate) fn claim(
     reporter: &Reporter,
 ) -> Result<Claim, OutputError> {
     let Some(record) = resume else {
-        return begin(&job.out, force).map(Claim::Ours);
+        let output = begin(&job.out, force || job.parts)?;
+        return Ok(Claim::Ours(Claimed {
+            output,
+            replace: force,
+        }));
     };
     let mut announced = false;
     loop {
@@ -42,8 +54,18 @@ pub(crate) fn claim(
         if state.stays() {
             return Ok(Claim::Done);
         }
-        match begin(&job.out, force || state.is_ours()) {
-            Ok(output) if Stamp::of(&job.out) == before => return Ok(Claim::Ours(output)),
+        match begin(&job.out, force || job.parts || state.is_ours()) {
+            Ok(output) if Stamp::of(&job.out) == before => {
+                if job.parts {
+                    // The name tells nothing of parts that another run has finished meanwhile.
+                    record.read();
+                    if record.state_of(job).stays() {
+                        return Ok(Claim::Done);
+                    }
+                }
+                let replace = force || state.is_ours() || record.knows(job);
+                return Ok(Claim::Ours(Claimed { output, replace }));
+            }
             // It was finished between the check and the claim.
             Ok(_) => {}
             Err(OutputError::Taken { path }) => {

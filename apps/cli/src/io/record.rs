@@ -46,6 +46,21 @@ impl Stamp {
         fs::metadata(path).ok().and_then(|data| Self::new(&data))
     }
 
+    /// Of several files as one: all bytes, and the latest time. None if one is missing.
+    fn of_all(paths: &[PathBuf]) -> Option<Self> {
+        let none = Self {
+            bytes: 0,
+            modified: 0,
+        };
+        paths.iter().try_fold(none, |all, path| {
+            let one = Self::of(path)?;
+            Some(Self {
+                bytes: all.bytes + one.bytes,
+                modified: all.modified.max(one.modified),
+            })
+        })
+    }
+
     fn new(data: &fs::Metadata) -> Option<Self> {
         let since = data.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
         Some(Self {
@@ -62,6 +77,9 @@ struct Line {
     is: Stamp,
     options: String,
     of: Stamp,
+    /// The files that were written instead of it, if it was written in parts: `is` is of all of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<String>,
 }
 
 /// What is known of an output.
@@ -71,6 +89,8 @@ pub(crate) enum OutputState {
     Missing,
     /// It is up to date.
     Right,
+    /// It is up to date, but what belongs beside it is missing.
+    Incomplete,
     /// It was made with other options.
     OtherOptions,
     /// Its input has changed.
@@ -89,7 +109,10 @@ impl OutputState {
 
     /// Whether we made it and it may be replaced.
     pub(crate) fn is_ours(self) -> bool {
-        matches!(self, Self::OtherOptions | Self::OtherInput)
+        matches!(
+            self,
+            Self::Incomplete | Self::OtherOptions | Self::OtherInput
+        )
     }
 }
 
@@ -129,32 +152,58 @@ impl OutputRecord {
 
     /// Whether an output is up to date, as far as is known.
     pub(crate) fn state_of(&self, job: &Job) -> OutputState {
-        let Some(is) = Stamp::of(&job.out) else {
+        let is = Stamp::of(&job.out);
+        if is.is_none() && !job.parts {
             return OutputState::Missing;
-        };
+        }
         let of = Stamp::of(formats::member(&job.input).0);
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let lines = known.get(&self.name(&job.out)).into_iter().flatten();
-        match lines.rev().find(|line| line.is == is) {
+        let is_that = |line: &&Line| match job.parts {
+            true => {
+                let parts = line.parts.iter().map(|part| self.folder.join(part));
+                !line.parts.is_empty() && Stamp::of_all(&parts.collect::<Vec<_>>()) == Some(line.is)
+            }
+            false => line.parts.is_empty() && Some(line.is) == is,
+        };
+        let incomplete = job.beside.as_ref().is_some_and(|beside| !beside.exists());
+        match lines.rev().find(is_that) {
             Some(line) if line.options != self.hash(job) => OutputState::OtherOptions,
             Some(line) if Some(line.of) != of => OutputState::OtherInput,
+            Some(_) if incomplete => OutputState::Incomplete,
             Some(_) => OutputState::Right,
-            None if of.is_some_and(|of| is.modified >= of.modified) => OutputState::Newer,
+            None if job.parts => OutputState::Missing,
+            None if of
+                .zip(is)
+                .is_some_and(|(of, is)| is.modified >= of.modified) =>
+            {
+                OutputState::Newer
+            }
             None => OutputState::Older,
         }
     }
 
-    /// Records a file that is about to get its name. `part`: where it is until then.
-    pub(crate) fn add(&self, job: &Job, part: &Path) -> io::Result<()> {
+    /// Whether it was ever made, in whichever way.
+    pub(crate) fn knows(&self, job: &Job) -> bool {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        known.contains_key(&self.name(&job.out))
+    }
+
+    /// Records a file that is about to get its name, or those of its parts. `made`: their names, and where they are
+    /// until then.
+    pub(crate) fn add(&self, job: &Job, made: &[(&Path, &Path)]) -> io::Result<()> {
         let input = Stamp::of(formats::member(&job.input).0);
-        let (Some(is), Some(of)) = (Stamp::of(part), input) else {
+        let now: Vec<PathBuf> = made.iter().map(|(_, now)| now.to_path_buf()).collect();
+        let (Some(is), Some(of)) = (Stamp::of_all(&now), input) else {
             return Ok(());
         };
+        let parts = made.iter().filter(|_| job.parts);
         let line = Line {
             out: self.name(&job.out),
             is,
             options: self.hash(job),
             of,
+            parts: parts.map(|(out, _)| self.name(out)).collect(),
         };
         let mut text = serde_json::to_vec(&line)?;
         text.push(b'\n');
@@ -207,13 +256,15 @@ mod tests {
             input: folder.path().join("a.swc"),
             out: folder.path().join("a.ply"),
             placement: String::new(),
+            beside: None,
+            parts: false,
         };
         fs::write(&job.input, "in").expect("written");
         let record = OutputRecord::open(folder.path(), "level 1");
         assert_eq!(record.state_of(&job), OutputState::Missing);
         fs::write(&job.out, "mesh").expect("written");
         assert_eq!(record.state_of(&job), OutputState::Newer);
-        record.add(&job, &job.out).expect("recorded");
+        record.add(&job, &[(&job.out, &job.out)]).expect("recorded");
         // An incomplete line, and one of a run that was killed, do no harm.
         let mut file = OpenOptions::new();
         let mut file = file
@@ -227,6 +278,39 @@ mod tests {
         assert_eq!(other.state_of(&job), OutputState::OtherOptions);
         fs::write(&job.input, "another").expect("written");
         assert_eq!(record.state_of(&job), OutputState::OtherInput);
+    }
+
+    #[test]
+    fn parts_are_right_together_and_with_what_is_beside_them() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let mut job = Job {
+            input: at("a.swc"),
+            out: at("a.obj"),
+            placement: String::new(),
+            beside: Some(at("a.mtl")),
+            parts: true,
+        };
+        for name in ["a.swc", "a.mtl", "a_soma.obj", "a_axon.obj"] {
+            fs::write(at(name), name).expect("written");
+        }
+        let record = OutputRecord::open(folder.path(), "level 1");
+        assert_eq!(record.state_of(&job), OutputState::Missing);
+        let parts = ["a_soma.obj", "a_axon.obj"].map(at);
+        let made = parts.each_ref().map(|part| (&**part, &**part));
+        record.add(&job, &made).expect("recorded");
+        record.read();
+        assert_eq!(record.state_of(&job), OutputState::Right);
+        fs::remove_file(at("a.mtl")).expect("removed");
+        assert_eq!(record.state_of(&job), OutputState::Incomplete);
+        job.beside = None;
+        assert_eq!(record.state_of(&job), OutputState::Right);
+        fs::remove_file(at("a_axon.obj")).expect("removed");
+        assert_eq!(record.state_of(&job), OutputState::Missing);
+        // The whole is another file.
+        job.parts = false;
+        fs::write(&job.out, "whole").expect("written");
+        assert_eq!(record.state_of(&job), OutputState::Newer);
     }
 
     #[test]

@@ -22,6 +22,23 @@ pub(crate) struct Job {
     pub(crate) out: PathBuf,
     /// The instance of a circuit with its placement, as text; empty for a file.
     pub(crate) placement: String,
+    /// A file that is written beside it, without which it is not complete.
+    pub(crate) beside: Option<PathBuf>,
+    /// Whether `out` is not itself written, but files named after it, one for each type.
+    pub(crate) parts: bool,
+}
+
+impl Job {
+    /// The file of a part: the name of the type behind that of the file.
+    pub(crate) fn part(out: &Path, name: &str) -> PathBuf {
+        let mut file = out.file_stem().unwrap_or_default().to_owned();
+        file.push(format!("_{name}"));
+        if let Some(extension) = out.extension() {
+            file.push(".");
+            file.push(extension);
+        }
+        out.with_file_name(file)
+    }
 }
 
 /// Whether OUT is a folder: for anything but a single file, and if it already is one.
@@ -66,6 +83,8 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
             input: path.clone(),
             out: target,
             placement: String::new(),
+            beside: None,
+            parts: false,
         });
     }
     Ok(jobs)
@@ -127,6 +146,13 @@ mod tests {
         assert_eq!(jobs[0].out, Path::new("x/a.ply"));
         let jobs = plan(&inputs(&["a.swc.gz"], true), Path::new("x/"), "ply").expect("a plan");
         assert_eq!(jobs[0].out, Path::new("x/a.ply"));
+    }
+
+    #[test]
+    fn parts_are_named_after_their_file() {
+        let part = |out: &str| Job::part(Path::new(out), "axon");
+        assert_eq!(part("x/a.CNG.obj"), Path::new("x/a.CNG_axon.obj"));
+        assert_eq!(part("a"), Path::new("a_axon"));
     }
 
     #[test]

@@ -23,13 +23,15 @@ use crate::options::types::Types;
   neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
   neurotess mesh cell.swc -o cell.ply --simulation
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
+  neurotess mesh cell.swc -o cell.obj --materials      (and cell.mtl: for Blender, MeshLab)
+  neurotess mesh cell.swc -o cell.stl --parts      (cell_soma.stl, cell_axon.stl, …)
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh cell.swc -o cell.msh --unit m --table cell.csv
   neurotess mesh circuit/ -o meshes/ --node-set L4 --sample 20
   neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
-and radius (µm). In MSH (Gmsh) each section is a surface and each type a physical group; in POLY and
+and radius (µm). OBJ has a group for each type, and GLB a material. In MSH (Gmsh) each section is a surface and each type a physical group; in POLY and
 SMESH (TetGen) facets are marked by type.")]
 pub(crate) struct MeshArgs {
     /// Morphology files, folders (searched recursively) or globs, - for standard input; or one
@@ -138,7 +140,17 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
           help_heading = "Output")]
     pub(crate) unit: UnitArg,
-    /// Walls inside, between the soma and each neurite, so that tetrahedra get regions (msh, msh2, poly, smesh)
+    /// Materials in the colors of types: of glb, and of obj in a file beside it that ends in .mtl. Some
+    /// programs, as trimesh, then read a mesh for each material [default: yes for glb, no for obj]
+    #[arg(long, value_enum, value_name = "WHETHER", num_args = 0..=1, require_equals = true,
+          default_missing_value = "yes", help_heading = "Output")]
+    pub(crate) materials: Option<MaterialsArg>,
+    /// A file for each type instead of one: OUT_soma, OUT_axon, OUT_basal_dendrite, … Each is open where it
+    /// was cut from the next, unless --walls close it
+    #[arg(long, conflicts_with = "table", help_heading = "Output")]
+    pub(crate) parts: bool,
+    /// Walls inside, between the soma and each neurite, so that tetrahedra get regions (msh, msh2, poly, smesh;
+    /// all with --parts)
     #[arg(long, help_heading = "Output")]
     pub(crate) walls: bool,
     /// Also write a row for each triangle: its sample, section, place along the section and SWC type
@@ -198,6 +210,15 @@ pub(crate) enum CapsArg {
     Round,
     /// Disks
     Flat,
+}
+
+/// `--materials`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MaterialsArg {
+    /// One for each type
+    Yes,
+    /// None
+    No,
 }
 
 /// `--soma-sphere`

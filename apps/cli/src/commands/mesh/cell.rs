@@ -8,12 +8,11 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
 use neurotess::generate::Generated;
-use neurotess::mesh::{
-    self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, Watched, WriteError,
-};
+use neurotess::mesh::{self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, Watched};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
+use super::files::{Files, PartReport, Target, broken};
 use super::meshed::Meshed;
 use super::observed::Observed;
 use super::options::MeshOptions;
@@ -21,8 +20,9 @@ use super::smoothing::SmoothingReport;
 use super::surface::{CellSurface, CrossingsReport, SeparationReport};
 use super::warning::CellWarning;
 use super::{size, table, verdict};
+use crate::io::claims::Claimed;
 use crate::io::morphologies::read_morphology;
-use crate::io::output::{Output, OutputError, begin};
+use crate::io::output::{OutputError, begin};
 use crate::io::targets::Job;
 use crate::report::{Failure, Progress, Reporter};
 
@@ -31,6 +31,12 @@ use crate::report::{Failure, Progress, Reporter};
 pub(crate) struct CellReport {
     pub(crate) file: String,
     pub(crate) out: String,
+    /// The files that were written instead of `out`, one for each type.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) parts: Vec<PartReport>,
+    /// The file of materials.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) materials: Option<String>,
     /// The cell's node, if it is of a circuit.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub(crate) node: Option<NodeName>,
@@ -104,16 +110,14 @@ impl Prepared {
 /// A cell in temporary files.
 pub(super) struct Made {
     pub(super) report: CellReport,
-    pub(super) mesh: Output,
-    /// The table of triangles, if there is to be one.
-    pub(super) table: Option<Output>,
+    pub(super) files: Files,
 }
 
 /// Generates the mesh of one cell and writes it, with its table if there is to be one.
 pub(super) fn mesh(
     job: &Job,
     options: &MeshOptions,
-    output: Output,
+    claimed: Claimed,
     watchers: Watchers<'_>,
 ) -> Result<Made, Failure> {
     let file = job.input.display();
@@ -121,22 +125,19 @@ pub(super) fn mesh(
     // Before the work: it may be in the way.
     let path = options.table.as_deref();
     let table = path.map(|path| begin(path, options.force)).transpose();
-    let mut table = table.map_err(failed)?;
+    let table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
     let surface = prepared.surface(options);
-    let to = (&*job.out, output);
-    let (report, mesh) = finish(&prepared, &surface, options, to, None, watchers)?;
-    if let (Some(path), Some(table)) = (path, &mut table)
+    let to = Target::new(job, claimed);
+    let mut made = finish(&prepared, &surface, options, to, None, watchers)?;
+    if let (Some(path), Some(mut table)) = (path, table)
         && let Some(morphology) = &prepared.morphology
     {
         table::write(surface.surface(), morphology, table.file())
             .map_err(|e| failed(broken(path, e)))?;
+        made.files.add(table);
     }
-    Ok(Made {
-        report,
-        mesh,
-        table,
-    })
+    Ok(made)
 }
 
 /// What is informed while a cell is written.
@@ -181,16 +182,16 @@ pub(super) fn finish(
     prepared: &Prepared,
     cell_surface: &CellSurface<'_>,
     options: &MeshOptions,
-    (out, mut output): (&Path, Output),
+    to: Target<'_>,
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
-) -> Result<(CellReport, Output), Failure> {
+) -> Result<Made, Failure> {
     let Prepared { file, meshed, .. } = prepared;
     let generated = &meshed.generated;
     let mut seconds = prepared.seconds;
     seconds.refine = meshed.merging_seconds + cell_surface.seconds;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
-    let to = (out, &mut output);
+    let out = to.out();
     let watched = Watched::new(cell_surface.surface());
     let walled = options.walls.then(|| {
         let whole = SurfaceMesh::collect(&watched);
@@ -224,6 +225,10 @@ pub(super) fn finish(
     let cell = CellReport {
         file: file.clone(),
         out: out.display().to_string(),
+        parts: written.parts,
+        materials: options
+            .materials_of(out)
+            .map(|file| file.display().to_string()),
         node: None,
         vertices: written.vertices,
         triangles: written.triangles,
@@ -244,7 +249,10 @@ pub(super) fn finish(
             .chain(walled.iter().filter_map(verdict::of_walls))
             .collect(),
     };
-    Ok((cell, output))
+    Ok(Made {
+        report: cell,
+        files: written.files,
+    })
 }
 
 /// Volume (µm³) of all somata.
@@ -253,8 +261,10 @@ pub(super) fn soma_volume(generated: &Generated) -> f64 {
     generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0
 }
 
-/// What was written into a file.
+/// What was written into files.
 struct Written {
+    files: Files,
+    parts: Vec<PartReport>,
     vertices: usize,
     triangles: usize,
     quads: usize,
@@ -263,7 +273,7 @@ struct Written {
 fn write(
     surface: &dyn Surface,
     options: &MeshOptions,
-    (out, output): (&Path, &mut Output),
+    to: Target<'_>,
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
     seconds: &mut Seconds,
@@ -277,26 +287,22 @@ fn write(
     };
 
     let clock = Instant::now();
-    size::tell(surface, options.format, out, watchers.reporter)?;
-    let observed = Observed::new(surface, options.format, watchers.progress);
-    surfaces::write(&observed, options.format, output.file())
-        .map_err(|e| Failure(broken(out, e).to_string()))?;
+    size::tell(surface, options.format, to.out(), watchers.reporter)?;
+    let observed = Observed::new(surface, options, watchers.progress);
+    let (files, parts) = to
+        .write(&observed, options)
+        .map_err(|e| Failure(e.to_string()))?;
     let pass = clock.elapsed().as_secs_f64();
     let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
     seconds.refine += blocks;
     seconds.write = pass - blocks;
     Ok(Written {
+        files,
+        parts,
         vertices: surface.vertex_count(),
         triangles: surface.triangle_count(),
         quads: surface.quad_count(),
     })
-}
-
-fn broken(out: &Path, error: WriteError) -> OutputError {
-    match error {
-        WriteError::Io(e) => OutputError::broken(out, e),
-        other => OutputError::broken(out, std::io::Error::other(other)),
-    }
 }
 
 /// All warnings of a cell: of its file, of its mesh and of its surface.

@@ -12,9 +12,10 @@ use std::time::Instant;
 use neurotess::circuit::{Circuit, Instance};
 
 use super::args::MeshArgs;
-use super::cell::{self, Made, NodeName, Watchers};
+use super::cell::{self, NodeName, Watchers};
 use super::circuit_glb;
 use super::entry::{self, Entry};
+use super::files::Target;
 use super::messages::{summarize, tell};
 use super::options::MeshOptions;
 use super::run::MeshRun;
@@ -65,6 +66,9 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     // No single input file, so that OUT is a folder.
     let options = MeshOptions::new(args, &Inputs::default(), measure)?;
     let mut instance_jobs = plan(&circuit, &instances, folder, options.format.extension());
+    for instance_job in &mut instance_jobs {
+        options.complete(&mut instance_job.job);
+    }
     if let Some(shard) = args.shard {
         instance_jobs = shard.of(instance_jobs);
     }
@@ -104,6 +108,8 @@ fn plan(
                 input,
                 out,
                 placement: format!("{instance:?}"),
+                beside: None,
+                parts: false,
             },
             node: NodeName {
                 population: population.clone(),
@@ -146,20 +152,16 @@ fn mesh_all(
             progress: None,
         };
         let one = |(index, instance_job): &(usize, InstanceJob)| {
-            let entry = run.cell(&instance_job.job, record, |output| match &prepared {
+            let entry = run.cell(&instance_job.job, record, |claimed| match &prepared {
                 Ok(prepared) => {
                     let placed = instance_job.instance.world_from_cell(prepared.soma_center);
-                    let out = &instance_job.job.out;
-                    let (surface, to) = (prepared.surface(options), (&**out, output));
+                    let surface = prepared.surface(options);
+                    let to = Target::new(&instance_job.job, claimed);
                     let written =
                         cell::finish(prepared, &surface, options, to, Some(placed), watchers);
-                    written.map(|(mut report, mesh)| {
-                        report.node = Some(instance_job.node.clone());
-                        Made {
-                            report,
-                            mesh,
-                            table: None,
-                        }
+                    written.map(|mut made| {
+                        made.report.node = Some(instance_job.node.clone());
+                        made
                     })
                 }
                 Err(failure) => Err(Failure(format!(

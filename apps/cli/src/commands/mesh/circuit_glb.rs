@@ -58,6 +58,9 @@ pub(super) fn run(
     if options.format != Format::Glb {
         return usage("only GLB holds a circuit in one file: leave out --format");
     }
+    if options.parts {
+        return usage("--parts writes files of one cell each: leave it out, or give a folder");
+    }
     existing(options.force).check(out)?;
     let prepared = prepare_all(circuit, instances, &options, reporter)?;
     let shown: Vec<&Instance> = instances
@@ -83,7 +86,11 @@ pub(super) fn run(
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;
-    write_glb(&surfaces, &nodes, &WriteOptions::default(), output.file()).map_err(|e| match e {
+    let write_options = WriteOptions {
+        glb_materials: options.materials,
+        ..WriteOptions::default()
+    };
+    write_glb(&surfaces, &nodes, &write_options, output.file()).map_err(|e| match e {
         WriteError::Io(e) => OutputError::broken(out, e),
         other => OutputError::broken(out, std::io::Error::other(other)),
     })?;

@@ -22,6 +22,10 @@ pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
         OutputState::OtherOptions,
         "made with other options: made again",
     );
+    note(
+        OutputState::Incomplete,
+        "without a file of materials: made again",
+    );
     note(OutputState::OtherInput, "made of another input: made again");
     note(
         OutputState::Newer,
@@ -49,7 +53,13 @@ pub(super) fn line(cell: &CellReport) -> String {
     format!(
         "{} → {}: {} vertices, {} faces, {}, {} in {:.3} s",
         cell.file,
-        cell.out,
+        match &cell.parts[..] {
+            [] => cell.out.clone(),
+            parts => {
+                let outs: Vec<&str> = parts.iter().map(|part| &*part.out).collect();
+                outs.join(", ")
+            }
+        },
         cell.vertices,
         cell.triangles + cell.quads,
         if cell.closed { "closed" } else { "NOT CLOSED" },

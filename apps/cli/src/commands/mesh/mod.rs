@@ -10,6 +10,7 @@ mod cell;
 mod circuit;
 mod circuit_glb;
 mod entry;
+mod files;
 mod in_memory;
 mod meshed;
 mod messages;
@@ -80,6 +81,9 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     let named = Format::from_extension(out).ok().map(Format::extension);
     reporter.warn_of_name(out, options.format.extension(), named);
     let mut jobs = targets::plan(&inputs, out, options.format.extension())?;
+    for job in &mut jobs {
+        options.complete(job);
+    }
     if let Some(shard) = args.shard {
         jobs = shard.of(jobs);
     }
@@ -122,8 +126,8 @@ fn mesh_all(jobs: &[Job], record: &OutputRecord, run: &MeshRun<'_>) -> anyhow::R
             reporter,
             progress: one.then_some(&progress),
         };
-        let entry = run.cell(job, record, |output| {
-            cell::mesh(job, run.options, output, watchers)
+        let entry = run.cell(job, record, |claimed| {
+            cell::mesh(job, run.options, claimed, watchers)
         });
         tell(&entry, one, reporter);
         if !one {

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use neurotess::mesh::{Faces, Format, Region, Soundness, Surface, SurfaceVertex, Unit};
 
+use super::options::MeshOptions;
 use crate::report::Progress;
 
 /// A surface and a clock for its blocks.
@@ -20,10 +21,10 @@ impl<'a> Observed<'a> {
     /// Measures a surface that goes into a file; the progress bar, if there is one, counts its blocks.
     pub(crate) fn new(
         surface: &'a dyn Surface,
-        format: Format,
+        options: &MeshOptions,
         progress: Option<&'a Progress<'a>>,
     ) -> Self {
-        let (vertices, faces) = passes(format);
+        let (vertices, faces) = passes(options);
         let expected = vertices * surface.vertex_blocks() + faces * surface.face_blocks();
         if let Some(progress) = progress {
             progress.expect(expected);
@@ -55,12 +56,18 @@ impl<'a> Observed<'a> {
     }
 }
 
-/// How often a format has the blocks of vertices and of faces made, about.
-fn passes(format: Format) -> (usize, usize) {
-    match format {
+/// How often the blocks of vertices and of faces are made, about.
+fn passes(options: &MeshOptions) -> (usize, usize) {
+    let (vertices, faces) = match options.format {
+        Format::Glb if options.materials => (1, 2),
         Format::Msh | Format::Msh2 => (4, 2),
         Format::Poly | Format::Smesh => (3, 1),
         _ => (1, 1),
+    };
+    match options.parts {
+        // Most cells have three parts or four, which are found first.
+        true => (1 + 3 * vertices, 1 + 3 * faces),
+        false => (vertices, faces),
     }
 }
 

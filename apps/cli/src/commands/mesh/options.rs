@@ -1,15 +1,15 @@
 //! From the command line's options to the library's.
 
-use std::path::PathBuf;
+use std::path::{self, PathBuf};
 
 use neurotess::generate::{Crossings, GenerateOptions, Sides, SphereKind};
 use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
-use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
+use super::args::{CapsArg, CrossingsArg, MaterialsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
-use crate::io::targets;
+use crate::io::targets::{self, Job};
 use crate::report::usage;
 
 /// How many times the local radius edges along neurites of a mesh for simulators may be long: a third to a half as
@@ -42,6 +42,10 @@ pub(crate) struct MeshOptions {
     pub(crate) unit: Unit,
     /// Whether walls part the soma from neurites.
     pub(crate) walls: bool,
+    /// Whether faces have the material of their type, in formats that know materials.
+    pub(crate) materials: bool,
+    /// Whether each type gets a file of its own.
+    pub(crate) parts: bool,
     /// Where a row for each triangle goes.
     pub(crate) table: Option<PathBuf>,
     pub(crate) force: bool,
@@ -62,6 +66,8 @@ impl MeshOptions {
             format,
             unit,
             walls,
+            materials,
+            parts,
             strict: _,
             table: _,
             force: _,
@@ -88,7 +94,27 @@ impl MeshOptions {
         let merged = if *merge { " merged" } else { "" };
         let simulation = if *simulation { " simulation" } else { "" };
         let walls = if *walls { " walls" } else { "" };
-        format!("{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}")
+        let materials = match (format, materials) {
+            (Format::Obj, true) => " materials",
+            (Format::Glb, false) => " no materials",
+            _ => "",
+        };
+        let parts = if *parts { " parts" } else { "" };
+        format!(
+            "{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}{materials}{parts}"
+        )
+    }
+
+    /// Where the file of materials of a mesh is, if it has one.
+    pub(super) fn materials_of(&self, out: &path::Path) -> Option<PathBuf> {
+        let has_one = self.format == Format::Obj && self.materials;
+        has_one.then(|| out.with_extension("mtl"))
+    }
+
+    /// Tells a job which files it has.
+    pub(super) fn complete(&self, job: &mut Job) {
+        job.beside = self.materials_of(&job.out);
+        job.parts = self.parts;
     }
 
     /// Checks the options together and translates them.
@@ -103,7 +129,7 @@ impl MeshOptions {
         if crossings != CrossingsArg::Keep && args.quads {
             return usage("merging leaves triangles only: leave out --quads or --crossings");
         }
-        if args.walls && !format.has_regions() {
+        if args.walls && !format.has_regions() && !args.parts {
             return usage(format!(
                 "{format} cannot tell walls from the membrane: leave out --walls, or write msh, msh2, poly or smesh"
             ));
@@ -114,6 +140,15 @@ impl MeshOptions {
             ));
         }
         let levels = levels(args)?;
+        if args.parts && is_standard(&args.out.out) {
+            return usage("--parts writes several files: give a name for them, as in -o cell.ply");
+        }
+        let has_quads = args.quads || levels == MeshLevels::Coarse && format.has_quads();
+        if args.walls && has_quads {
+            return usage(
+                "walls are made of triangles: leave out --walls, or --quads and --level 0",
+            );
+        }
         Ok(Self {
             strict: args.strict,
             generate: GenerateOptions {
@@ -141,10 +176,35 @@ impl MeshOptions {
             format,
             unit: args.unit.unit(),
             walls: args.walls,
+            materials: materials(args, format)?,
+            parts: args.parts,
             table: args.table.clone(),
             force: args.out.force,
             measure,
         })
+    }
+}
+
+/// Whether there are materials: in GLB unless it must have its triangles in the order of a table.
+fn materials(args: &MeshArgs, format: Format) -> anyhow::Result<bool> {
+    let asked = args.materials == Some(MaterialsArg::Yes);
+    let out = &args.out.out;
+    match format {
+        Format::Glb if asked && args.table.is_some() => usage(
+            "materials part the triangles of glb by type, in another order than the rows of --table: leave out one",
+        ),
+        Format::Glb => Ok(args.materials != Some(MaterialsArg::No) && args.table.is_none()),
+        Format::Obj if asked && is_standard(out) => usage(
+            "standard output has no place for the file of materials: leave out --materials, or give a file",
+        ),
+        Format::Obj if asked && out.extension().is_some_and(|end| end == "mtl") => usage(
+            "the file of materials would have the name of the mesh: give one that ends in .obj",
+        ),
+        Format::Obj => Ok(asked),
+        other if asked => usage(format!(
+            "{other} knows no materials: leave out --materials, or write obj or glb"
+        )),
+        _ => Ok(false),
     }
 }
 
@@ -310,6 +370,8 @@ mod tests {
             format: Format::Ply,
             unit: Unit::Micrometer,
             walls: false,
+            materials: false,
+            parts: false,
             table: None,
             force: false,
             measure: false,
@@ -322,6 +384,7 @@ mod tests {
         );
         options.levels = MeshLevels::Coarse;
         options.format = Format::Glb;
+        options.materials = true;
         options.generate.rings = BTreeMap::from([(1, 0.5)]);
         options.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
         assert_eq!(

@@ -4,9 +4,9 @@ use super::cell::Made;
 use super::entry::{Entry, skipped};
 use super::messages::tell_states;
 use super::options::MeshOptions;
-use crate::io::claims::{Claim, claim};
+use crate::io::claims::{Claim, Claimed, claim};
 use crate::io::morphologies::readable;
-use crate::io::output::{Output, OutputError};
+use crate::io::output::OutputError;
 use crate::io::record::{self, OutputRecord};
 use crate::io::targets::Job;
 use crate::report::{Failed, Failure, Log, Reporter, bug};
@@ -66,7 +66,7 @@ impl MeshRun<'_> {
         &self,
         job: &Job,
         record: &OutputRecord,
-        make: impl FnOnce(Output) -> Result<Made, Failure>,
+        make: impl FnOnce(Claimed) -> Result<Made, Failure>,
     ) -> Entry {
         let file = job.input.display();
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
@@ -75,18 +75,14 @@ impl MeshRun<'_> {
             .and_then(|()| claim(job, self.options.force, resume, self.reporter).map_err(failed));
         let result = match claimed {
             Ok(Claim::Done) => return skipped(job),
-            Ok(Claim::Ours(output)) => make(output),
+            Ok(Claim::Ours(claimed)) => make(claimed),
             Err(failure) => Err(failure),
         };
         let failure = match result {
-            Ok(Made {
-                report,
-                mesh: output,
-                table,
-            }) => {
+            Ok(Made { report, files }) => {
                 let cell = Box::new(report);
                 if self.records
-                    && let Err(e) = record.add(job, output.part())
+                    && let Err(e) = record.add(job, &files.recorded(job))
                 {
                     let name = record::NAME;
                     self.reporter.warning(&format!(
@@ -96,10 +92,7 @@ impl MeshRun<'_> {
                 }
                 let entry = Entry::Done(cell);
                 self.log(&entry);
-                let finished = output
-                    .finish()
-                    .and_then(|()| table.map_or(Ok(()), Output::finish));
-                match finished.map_err(failed) {
+                match files.finish().map_err(failed) {
                     Ok(()) => return entry,
                     Err(failure) => failure,
                 }

@@ -17,6 +17,7 @@ mod markers;
 mod mesh;
 mod meshes;
 mod palettes;
+mod parts;
 mod render;
 mod resume;
 mod snudda;
