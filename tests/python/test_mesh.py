@@ -172,6 +172,15 @@ def test_every_format_is_written_and_read_back(mesh: nt.Mesh, tmp_path: Path) ->
         assert report["closed"], extension
         assert len(again.faces) == len(mesh.faces)
         assert nt.check(again, merge=extension == "stl")["volume"] == pytest.approx(mesh.volume, rel=1e-4)
+    mesh.save(tmp_path / "colored.obj", materials=True)
+    assert "usemtl soma" in (tmp_path / "colored.obj").read_text()
+    assert "newmtl soma" in (tmp_path / "colored.mtl").read_text()
+    assert not (tmp_path / "mesh.mtl").exists()
+    mesh.save(tmp_path / "plain.glb", materials=False)
+    assert b'"materials"' in (tmp_path / "mesh.glb").read_bytes()
+    assert b'"materials"' not in (tmp_path / "plain.glb").read_bytes()
+    with pytest.raises(ValueError, match="ply knows no materials"):
+        mesh.save(tmp_path / "x.ply", materials=True)
     mesh.save(tmp_path / "meters.ply", unit="m")
     assert nt.read_mesh(tmp_path / "meters.ply").volume == pytest.approx(mesh.volume * 1e-18, rel=1e-3)
     with pytest.raises(ValueError, match="unit='mm'"):

@@ -3,10 +3,11 @@
 mod columns;
 mod slices;
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use neurotess::mesh::{self, Format, InUnit, SurfaceMesh, Unit, measure_surface};
-use neurotess::output::Output;
+use neurotess::mesh::{self, Format, InUnit, SurfaceMesh, Unit, WriteOptions, measure_surface};
+use neurotess::output::{Output, write_into};
 use neurotess_cli::embed::{MeshRecipe, MeshReport};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -197,7 +198,7 @@ impl Surface {
         Ok((measure.volume, measure.area))
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes a file, whole or not at all, and one of materials beside an OBJ that has them.
     fn write(
         &self,
         py: Python<'_>,
@@ -205,6 +206,7 @@ impl Surface {
         format: Option<String>,
         unit: &str,
         overwrite: bool,
+        materials: Option<bool>,
     ) -> PyResult<()> {
         let format = match format {
             Some(name) => format_named(&name)?,
@@ -219,15 +221,38 @@ impl Surface {
                 )));
             }
         };
+        if materials == Some(true) && !matches!(format, Format::Obj | Format::Glb) {
+            return Err(PyValueError::new_err(format!(
+                "{format} knows no materials: leave out materials=True, or write obj or glb"
+            )));
+        }
+        let beside =
+            (format == Format::Obj && materials == Some(true)).then(|| path.with_extension("mtl"));
+        let name = beside.as_deref().and_then(Path::file_name);
+        let options = WriteOptions {
+            material_file: name.map(|name| name.to_string_lossy().into_owned()),
+            glb_materials: materials.unwrap_or(true),
+        };
         self.with(py, |slices| {
             let mut output =
                 Output::create(&path, existing(overwrite)).map_err(|e| errors::output(&e))?;
+            let beside = beside.as_deref().map(|path| {
+                let file = Output::create(path, existing(overwrite));
+                file.map(|file| (path, file))
+            });
+            let beside = beside.transpose().map_err(|e| errors::output(&e))?;
             let scaled = InUnit::new(slices, unit);
             let surface: &dyn mesh::Surface = match unit {
                 Unit::Micrometer => slices,
                 Unit::Meter => &scaled,
             };
-            mesh::write(surface, format, output.file()).map_err(unwritten)?;
+            let kinds =
+                mesh::write_with(surface, format, &options, output.file()).map_err(unwritten)?;
+            if let Some((path, file)) = beside {
+                let text = mesh::obj_materials(&kinds);
+                write_into(file, path, |file| file.write_all(text.as_bytes()))
+                    .map_err(|e| errors::output(&e))?;
+            }
             output.finish().map_err(|e| errors::output(&e))
         })?
     }
