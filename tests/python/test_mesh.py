@@ -176,9 +176,9 @@ def test_every_format_is_written_and_read_back(mesh: nt.Mesh, tmp_path: Path) ->
     assert "usemtl soma" in (tmp_path / "colored.obj").read_text()
     assert "newmtl soma" in (tmp_path / "colored.mtl").read_text()
     assert not (tmp_path / "mesh.mtl").exists()
-    mesh.save(tmp_path / "plain.glb", materials=False)
-    assert b'"materials"' in (tmp_path / "mesh.glb").read_bytes()
-    assert b'"materials"' not in (tmp_path / "plain.glb").read_bytes()
+    mesh.save(tmp_path / "colored.glb", materials=True)
+    assert b'"materials"' in (tmp_path / "colored.glb").read_bytes()
+    assert b'"materials"' not in (tmp_path / "mesh.glb").read_bytes()
     with pytest.raises(ValueError, match="ply knows no materials"):
         mesh.save(tmp_path / "x.ply", materials=True)
     mesh.save(tmp_path / "meters.ply", unit="m")

@@ -175,15 +175,15 @@ class Mesh:
         format: str | None = None,
         unit: Literal["um", "m"] = "um",
         overwrite: bool = True,
-        materials: bool | None = None,
+        materials: bool = False,
     ) -> None:
         """Writes a file, whole or not at all: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH.
 
         The extension tells the format if `format` does not; ``format="msh2"`` is MSH 2.2, as STEPS wants it, in files
         that end in ``.msh``. With ``unit="m"`` coordinates and radii are in meters.
 
-        ``materials=True`` gives faces of an OBJ the colors of their types, in an ``.mtl`` file beside it. A GLB has such
-        materials unless ``materials=False``.
+        ``materials=True`` gives faces of a GLB or OBJ the colors of their types, of an OBJ in an ``.mtl`` file beside it.
+        Some programs then read a mesh for each type, none of which is closed.
         """
         self._surface.write(path, format, unit, overwrite, materials)
 

@@ -206,7 +206,7 @@ impl Surface {
         format: Option<String>,
         unit: &str,
         overwrite: bool,
-        materials: Option<bool>,
+        materials: bool,
     ) -> PyResult<()> {
         let format = match format {
             Some(name) => format_named(&name)?,
@@ -221,17 +221,16 @@ impl Surface {
                 )));
             }
         };
-        if materials == Some(true) && !matches!(format, Format::Obj | Format::Glb) {
+        if materials && !matches!(format, Format::Obj | Format::Glb) {
             return Err(PyValueError::new_err(format!(
                 "{format} knows no materials: leave out materials=True, or write obj or glb"
             )));
         }
-        let beside =
-            (format == Format::Obj && materials == Some(true)).then(|| path.with_extension("mtl"));
+        let beside = (format == Format::Obj && materials).then(|| path.with_extension("mtl"));
         let name = beside.as_deref().and_then(Path::file_name);
         let options = WriteOptions {
             material_file: name.map(|name| name.to_string_lossy().into_owned()),
-            glb_materials: materials.unwrap_or(true),
+            glb_materials: materials,
         };
         self.with(py, |slices| {
             let mut output =

@@ -172,7 +172,13 @@ fn others_see_the_colors_of_types() {
     std::fs::write(&files[0], written(&mesh, Format::Obj)).expect("written");
     std::fs::write(&files[1], colored.into_inner()).expect("written");
     std::fs::write(at("colored.mtl"), obj_materials(&kinds)).expect("written");
-    std::fs::write(&files[2], written(&mesh, Format::Glb)).expect("written");
+    let options = WriteOptions {
+        glb_materials: true,
+        ..WriteOptions::default()
+    };
+    let mut glb = Cursor::new(Vec::new());
+    write_with(&mesh, Format::Glb, &options, &mut glb).expect("written");
+    std::fs::write(&files[2], glb.into_inner()).expect("written");
     let results = run(
         &python,
         "read_materials.py",

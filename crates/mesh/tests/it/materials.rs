@@ -83,6 +83,13 @@ fn an_obj_names_its_materials_and_their_file() {
     assert_eq!(read.faces, mesh.faces);
 }
 
+fn colored() -> WriteOptions {
+    WriteOptions {
+        glb_materials: true,
+        ..WriteOptions::default()
+    }
+}
+
 fn json(glb: &[u8]) -> Value {
     let length = u32::from_le_bytes(glb[12..16].try_into().expect("four")) as usize;
     serde_json::from_slice(&glb[20..20 + length]).expect("JSON")
@@ -91,7 +98,7 @@ fn json(glb: &[u8]) -> Value {
 #[neurotess_testing::test]
 fn a_glb_has_a_primitive_and_a_material_for_each_type() {
     let mesh = neuron(DVec3::new(900.5, 0.0, 0.0));
-    let bytes = written(&mesh, Format::Glb);
+    let bytes = with_options(&mesh, Format::Glb, &colored());
     let root = json(&bytes);
     let primitives = root["meshes"][0]["primitives"].as_array().expect("a list");
     assert_eq!(primitives.len(), 4);
@@ -128,11 +135,7 @@ fn a_glb_has_a_primitive_and_a_material_for_each_type() {
 #[neurotess_testing::test]
 fn a_glb_without_materials_is_one_primitive_in_the_order_of_the_surface() {
     let mesh = neuron(DVec3::ZERO);
-    let options = WriteOptions {
-        glb_materials: false,
-        ..WriteOptions::default()
-    };
-    let bytes = with_options(&mesh, Format::Glb, &options);
+    let bytes = written(&mesh, Format::Glb);
     let root = json(&bytes);
     assert!(root.get("materials").is_none());
     assert_eq!(
@@ -153,14 +156,14 @@ fn many_types_have_room() {
     for vertex in &mut mesh.vertices {
         vertex.kind = vertex.section - 3;
     }
-    let bytes = written(&mesh, Format::Glb);
+    let bytes = with_options(&mesh, Format::Glb, &colored());
     let materials = json(&bytes)["materials"].as_array().map(Vec::len);
     assert!(materials > Some(50), "{materials:?}");
     let report = check(&read_bytes(&bytes, Format::Glb).expect("read"));
     assert!(report.closed && report.oriented);
     let length = u32::from_le_bytes(bytes[8..12].try_into().expect("four")) as usize;
     assert_eq!(length, bytes.len());
-    let blocks = with_options(&Blocks(mesh, 7), Format::Glb, &WriteOptions::default());
+    let blocks = with_options(&Blocks(mesh, 7), Format::Glb, &colored());
     assert_eq!(
         json(&blocks)["materials"].as_array().map(Vec::len),
         materials
@@ -181,7 +184,7 @@ fn cells_of_a_circuit_share_materials() {
         world_from_surface: DAffine3::from_translation(DVec3::Y * 100.0 * surface as f64),
     });
     let mut file = Cursor::new(Vec::new());
-    write_glb(&surfaces, &nodes, &WriteOptions::default(), &mut file).expect("written");
+    write_glb(&surfaces, &nodes, &colored(), &mut file).expect("written");
     let bytes = file.into_inner();
     assert_eq!(json(&bytes)["materials"].as_array().map(Vec::len), Some(4));
     let report = check(&read_bytes(&bytes, Format::Glb).expect("read"));

@@ -23,7 +23,7 @@ use crate::options::types::Types;
   neurotess mesh cell.swc -o cell.ply --poisson 0.1 --ring 1=0.5 --ring 2=1.5
   neurotess mesh cell.swc -o cell.ply --simulation
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
-  neurotess mesh cell.swc -o cell.obj --materials      (and cell.mtl: for Blender, MeshLab)
+  neurotess mesh cell.swc -o cell.glb --materials      (in the colors of types: for Blender)
   neurotess mesh cell.swc -o cell.stl --parts      (cell_soma.stl, cell_axon.stl, …)
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh cell.swc -o cell.msh --unit m --table cell.csv
@@ -31,8 +31,8 @@ use crate::options::types::Types;
   neurotess mesh circuit/ -o circuit.glb      (one file: each morphology once, each cell a node)
 
 PLY, GLB and VTU carry normals and, per vertex, type (SWC), point (number of the sample), section
-and radius (µm). OBJ has a group for each type, and GLB a material. In MSH (Gmsh) each section is a surface and each type a physical group; in POLY and
-SMESH (TetGen) facets are marked by type.")]
+and radius (µm). OBJ has a group for each type. In MSH (Gmsh) each section is a
+surface and each type a physical group; in POLY and SMESH (TetGen) facets are marked by type.")]
 pub(crate) struct MeshArgs {
     /// Morphology files, folders (searched recursively) or globs, - for standard input; or one
     /// circuit, whose cells are written in its coordinates
@@ -140,11 +140,10 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, default_value_t = UnitArg::Um, value_name = "UNIT",
           help_heading = "Output")]
     pub(crate) unit: UnitArg,
-    /// Materials in the colors of types: of glb, and of obj in a file beside it that ends in .mtl. Some
-    /// programs, as trimesh, then read a mesh for each material [default: yes for glb, no for obj]
-    #[arg(long, value_enum, value_name = "WHETHER", num_args = 0..=1, require_equals = true,
-          default_missing_value = "yes", help_heading = "Output")]
-    pub(crate) materials: Option<MaterialsArg>,
+    /// Materials in the colors of types: in glb, and of obj in a file beside it that ends in .mtl. Some
+    /// programs, as trimesh, then read a mesh for each material, none of which is closed
+    #[arg(long, help_heading = "Output")]
+    pub(crate) materials: bool,
     /// A file for each type instead of one: OUT_soma, OUT_axon, OUT_basal_dendrite, … Each is open where it
     /// was cut from the next, unless --walls close it
     #[arg(long, conflicts_with = "table", help_heading = "Output")]
@@ -210,15 +209,6 @@ pub(crate) enum CapsArg {
     Round,
     /// Disks
     Flat,
-}
-
-/// `--materials`
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MaterialsArg {
-    /// One for each type
-    Yes,
-    /// None
-    No,
 }
 
 /// `--soma-sphere`

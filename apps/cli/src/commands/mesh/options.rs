@@ -6,7 +6,7 @@ use neurotess::generate::{Crossings, GenerateOptions, Sides, SphereKind};
 use neurotess::mesh::{Format, Unit};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
-use super::args::{CapsArg, CrossingsArg, MaterialsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
+use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets::{self, Job};
@@ -96,7 +96,7 @@ impl MeshOptions {
         let walls = if *walls { " walls" } else { "" };
         let materials = match (format, materials) {
             (Format::Obj, true) => " materials",
-            (Format::Glb, false) => " no materials",
+            (Format::Glb, true) => " materials",
             _ => "",
         };
         let parts = if *parts { " parts" } else { "" };
@@ -185,22 +185,21 @@ impl MeshOptions {
     }
 }
 
-/// Whether there are materials: in GLB unless it must have its triangles in the order of a table.
+/// Whether there are materials.
 fn materials(args: &MeshArgs, format: Format) -> anyhow::Result<bool> {
-    let asked = args.materials == Some(MaterialsArg::Yes);
+    let asked = args.materials;
     let out = &args.out.out;
     match format {
         Format::Glb if asked && args.table.is_some() => usage(
             "materials part the triangles of glb by type, in another order than the rows of --table: leave out one",
         ),
-        Format::Glb => Ok(args.materials != Some(MaterialsArg::No) && args.table.is_none()),
         Format::Obj if asked && is_standard(out) => usage(
             "standard output has no place for the file of materials: leave out --materials, or give a file",
         ),
         Format::Obj if asked && out.extension().is_some_and(|end| end == "mtl") => usage(
             "the file of materials would have the name of the mesh: give one that ends in .obj",
         ),
-        Format::Obj => Ok(asked),
+        Format::Obj | Format::Glb => Ok(asked),
         other if asked => usage(format!(
             "{other} knows no materials: leave out --materials, or write obj or glb"
         )),

@@ -118,9 +118,8 @@ fn materials_of_an_obj_are_beside_it() {
 fn a_glb_is_closed_with_materials_and_without() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
-    work.run("mesh cell.swc -o cell.glb").exits(0);
-    work.run("mesh cell.swc -o plain.glb --materials=no")
-        .exits(0);
+    work.run("mesh cell.swc -o cell.glb --materials").exits(0);
+    work.run("mesh cell.swc -o plain.glb").exits(0);
     work.run("mesh cell.swc -o told.glb --table told.csv")
         .exits(0);
     let found = check(&work, "cell.glb plain.glb told.glb");
