@@ -12,6 +12,7 @@ pub(crate) mod progressive;
 pub(crate) mod static_picture;
 pub(crate) mod still;
 pub(crate) mod text;
+pub(crate) mod stroke;
 pub(crate) mod tiles;
 pub(crate) mod tiling;
 pub(crate) mod watch;
