@@ -86,7 +86,7 @@ impl StillScene {
         Annotations::new(annotations, options.size, background)
     }
 
-    /// Legend and scale bar, in the same corners for all pictures.
+    /// Legend, scale bar and axes, in the same corners for all pictures.
     pub(super) fn overlay(&self, film_frames: &[FilmFrame], options: &PictureFile) -> Overlay {
         let cameras: Vec<Camera> = film_frames
             .iter()
@@ -101,3 +101,4 @@ impl StillScene {
         Overlay::new(&overlay, options.size, &cameras, &self.spheres)
     }
 }
+            axes: self.look.axes,

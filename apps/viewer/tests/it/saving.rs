@@ -10,7 +10,7 @@ use neurotess_testing::note;
 use neurotess_viewer::Command;
 use neurotess_viewer::save::PictureFile;
 
-use crate::common::{Window, gpu, run, settle, state, viewer, with_samples};
+use crate::common::{Window, gpu, run, set_look, settle, state, viewer, with_samples};
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
@@ -104,4 +104,26 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     };
     run(&mut window, Command::SavePicture(small));
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn saved_pictures_have_the_axes_that_show() {
+    let mut window = with_samples(&[Kind::Star]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = |window: &mut Window, name: &str| {
+        let out = folder.path().join(name);
+        let options = PictureFile {
+            out: out.clone(),
+            size: [200, 160],
+            samples: 1,
+            transparent: false,
+            replace: false,
+        };
+        run(window, Command::SavePicture(options));
+        fs::read(out).expect("saved")
+    };
+    let with = picture(&mut window, "with.png");
+    assert_eq!(picture(&mut window, "same.png"), with);
+    set_look(&mut window, |look| look.axes = false);
+    assert_ne!(picture(&mut window, "without.png"), with);
 }

@@ -188,6 +188,7 @@ def render(
     trim_colormap: bool = False,
     legend: bool = True,
     scale_bar: bool | float = False,
+    axes: bool = False,
     background: str | None = None,
     transparent: bool = False,
     samples: int | None = None,
@@ -233,7 +234,7 @@ def render(
     The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
 
     Picture: `size` (1280, 960), `background` (``"white"``, ``"#102030"``) or `transparent`, `samples` (16),
-    `legend`, `scale_bar` (True, or a length in µm).
+    `legend`, `scale_bar` (True, or a length in µm), `axes` (the directions of x, y and z).
 
     Colors: `color_by`; of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
     `time` (ms); `range`, `colormap`, `trim_colormap`; `palette`: a name, a file, or colors of your own by the name
@@ -275,6 +276,7 @@ def render(
         "trim_colormap": trim_colormap,
         "legend": legend,
         "scale_bar": scale_bar,
+        "axes": axes,
         "background": background,
         "transparent": transparent,
         "samples": samples,

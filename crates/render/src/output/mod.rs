@@ -1,6 +1,7 @@
 //! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; overlays; picking ids.
 
 pub(crate) mod annotation;
+pub(crate) mod axes;
 pub(crate) mod extent;
 pub(crate) mod ids;
 pub(crate) mod image;
@@ -11,8 +12,8 @@ pub(crate) mod overlay;
 pub(crate) mod progressive;
 pub(crate) mod static_picture;
 pub(crate) mod still;
-pub(crate) mod text;
 pub(crate) mod stroke;
+pub(crate) mod text;
 pub(crate) mod tiles;
 pub(crate) mod tiling;
 pub(crate) mod watch;

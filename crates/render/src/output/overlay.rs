@@ -1,5 +1,6 @@
-//! Legend and scale bar in the corners of a picture.
+//! Legend, scale bar and axes in the corners of a picture.
 
+use crate::output::axes::axes;
 use crate::output::image::Image;
 use crate::output::legend::{Legend, nice_length, scale_bar};
 use crate::scene::color::{Rgb, is_dark};
@@ -29,6 +30,8 @@ struct Kept {
     /// Corner of the scale bar, its length (µm; 0: as long as fits), and whether it covers
     /// something.
     bar: Option<(usize, f64, bool)>,
+    /// Corner of the axes, and whether they cover something.
+    axes: Option<(usize, bool)>,
 }
 
 /// What is drawn into the corners.
@@ -38,6 +41,8 @@ pub struct OverlayOptions {
     pub legend: Option<Legend>,
     /// A scale bar of this length (µm; 0: as long as fits).
     pub scale_bar: Option<f64>,
+    /// Whether the directions of x, y and z are shown.
+    pub axes: bool,
     /// Color behind everything; none: transparent.
     pub background: Option<Rgb>,
 }
@@ -70,6 +75,7 @@ impl Overlay {
             background: options.background,
             legend: None,
             bar: None,
+            axes: None,
         };
         if let Some(legend) = &options.legend {
             let image = legend.draw(line, ink);
@@ -96,14 +102,25 @@ impl Overlay {
             let (corner, count) = seen.emptiest(&image, line, &corners);
             kept.bar = Some((corner, length, count > 0));
         }
+        if let (true, Some(camera)) = (options.axes, cameras.first()) {
+            let taken = [kept.legend.map(|l| l.0), kept.bar.map(|b| b.0)];
+            let image = axes(camera, line);
+            let corners = [2, 3, 0, 1]
+                .into_iter()
+                .filter(|&c| !taken.contains(&Some(c)));
+            let (corner, count) = seen.emptiest(&image, line, &corners.collect::<Vec<_>>());
+            // In tiny pictures there is no room for them.
+            let fits = (image.width as f32) < 0.4 * width.min(height);
+            kept.axes = fits.then_some((corner, count > 0));
+        }
         overlay.kept = Some(kept);
         let camera = cameras.first();
         overlay.pieces = pieces(&kept, options.legend.as_ref(), camera);
         overlay
     }
 
-    /// The overlay of another picture of the series: with its legend and scale bar, in the same
-    /// corners.
+    /// The overlay of another picture of the series: with its legend, scale bar and axes, in the
+    /// same corners.
     #[must_use]
     pub fn again(&self, legend: Option<&Legend>, camera: &Camera) -> Self {
         let mut overlay = self.clone();
@@ -130,21 +147,21 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
     } = *kept;
     let ink = ink(background);
     let mut pieces = Vec::new();
-    if let (Some((corner, covers)), Some(legend)) = (kept.legend, legend) {
-        let image = legend.draw(line, ink);
+    let mut lay = |corner: usize, covers: bool, image: Image| {
         let [x, y] = place(corner, size, &image, line);
         if let Some(background) = background.filter(|_| covers) {
             pieces.push((x, y, panel(&image, background)));
         }
         pieces.push((x, y, image));
+    };
+    if let (Some((corner, covers)), Some(legend)) = (kept.legend, legend) {
+        lay(corner, covers, legend.draw(line, ink));
     }
     if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera) {
-        let image = bar(camera, length, size, line, ink);
-        let [x, y] = place(corner, size, &image, line);
-        if let Some(background) = background.filter(|_| covers) {
-            pieces.push((x, y, panel(&image, background)));
-        }
-        pieces.push((x, y, image));
+        lay(corner, covers, bar(camera, length, size, line, ink));
+    }
+    if let (Some((corner, covers)), Some(camera)) = (kept.axes, camera) {
+        lay(corner, covers, axes(camera, line));
     }
     pieces
 }

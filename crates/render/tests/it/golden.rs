@@ -119,6 +119,7 @@ fn a_scale_with_its_legend_on_nothing() {
         &OverlayOptions {
             legend: Some(Legend::bar("distance", "µm", scale, [0.0, reach], false)),
             scale_bar: Some(0.0),
+            axes: false,
             background: None,
         },
         options.size,

@@ -200,6 +200,7 @@ fn spheres_and_tubes_have_one_size_and_the_scale_bar_is_theirs() {
     let overlay = OverlayOptions {
         legend: None,
         scale_bar: Some(length),
+        axes: false,
         background: Some([255; 3]),
     };
     let mut paper = Image::new(SIZE[0], SIZE[1]);

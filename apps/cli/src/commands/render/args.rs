@@ -126,9 +126,13 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "UM", num_args = 0..=1, default_missing_value = "fit",
           help_heading = "Picture")]
     pub(crate) scale_bar: Option<Fit>,
-    /// Draw neurites at least this wide (pixels), so that thin ones can be seen in a figure; the legend
-    /// says so
-    #[arg(long, value_name = "PX", value_parser = crate::options::numbers::positive,
+    /// Show the directions of x, y and z in a corner
+    #[arg(long, help_heading = "Picture")]
+    pub(crate) axes: bool,
+    /// Draw neurites at least this wide, so that thin ones can be seen; the legend says so. In pixels of
+    /// pictures whose shorter side has up to 960; proportionally more in larger ones. 0: as wide as they are
+    /// [default: 1.5, of more than 50 neurons 0]
+    #[arg(long, value_name = "PX", value_parser = crate::options::numbers::not_negative,
           allow_negative_numbers = true, help_heading = "Picture")]
     pub(crate) least_width: Option<f64>,
     /// Draw neurites with their radii times this factor, so that thin ones can be seen in a figure; the

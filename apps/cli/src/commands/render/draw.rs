@@ -38,6 +38,7 @@ pub(super) fn overlay(
             Fit::Auto => 0.0,
             Fit::Length(length) => length,
         }),
+        axes: args.axes,
         background: args.background(),
     };
     let mut overlay = Overlay::new(&options, args.size.0, &cameras, spheres);

@@ -484,3 +484,33 @@ fn tracings_that_do_not_fit_the_adapter_are_drawn_as_those_that_do() {
         run.stderr()
     );
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn thin_neurites_are_widened_unless_they_are_not_to_be() {
+    let ink = |arguments: &str| -> u64 {
+        let picture = picture(&format!("--no-legend {arguments}"));
+        let bytes = picture.pixels.iter().map(|&byte| u64::from(255 - byte));
+        bytes.sum()
+    };
+    // Cells are small in small pictures: all neurites are thin.
+    let [usual, same, off] = ["", "--least-width 1.5", "--least-width 0"].map(ink);
+    assert_eq!(usual, same);
+    assert!(10 * usual > 13 * off, "{usual} {off}");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn axes_are_drawn_where_there_is_room() {
+    let axis = |picture: &Picture| picture.pixels().any(|pixel| pixel == [70, 160, 70]);
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    for (name, options, shows) in [
+        ("with", "--size 240x180 --axes", true),
+        ("without", "--size 240x180", false),
+        ("tiny", "--size 40x30 --axes", false),
+    ] {
+        let line = format!("render cell.swc -o {name}.png --samples 1 {options}");
+        work.run(&line).exits(0);
+        let picture = Picture::read(&work, &format!("{name}.png"));
+        assert_eq!(axis(&picture), shows, "{name}");
+    }
+}
