@@ -7,6 +7,13 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number >= 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("a number of 0 or more is needed".into()),
+    }
+}
+
 /// A factor on radii. Far beyond these bounds there is nothing to recognize.
 pub(crate) fn radius_factor(text: &str) -> Result<f64, String> {
     match positive(text) {

@@ -127,7 +127,7 @@ impl State {
     pub(crate) fn mesh_count(&self, all: bool) -> usize {
         let neurons = &self.document.neurons;
         match all {
-            true => neurons.len() - neurons.hidden(),
+            true => self.shown(),
             false => neurons.selected().len(),
         }
     }

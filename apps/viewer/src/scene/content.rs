@@ -279,8 +279,8 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
     document.neurons.iter().map(|n| state(n.selected)).collect()
 }
 
-/// Light, wireframe and colors of states.
-pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
+/// Light, wireframe and colors of states. `least_width`: of neurites (pixels).
+pub(crate) fn surface_look(look: &Look, least_width: f32) -> neurotess::render::Look {
     neurotess::render::Look {
         light: look.light.light(),
         wire: if look.wireframe { WIRE } else { 0.0 },
@@ -288,7 +288,7 @@ pub(crate) fn surface_look(look: &Look) -> neurotess::render::Look {
         highlighted: (SELECTION, 0.75),
         ghosted: look.ghost_opacity.clamp(0.0, 1.0),
         contrast: Some(look.background),
-        least_width: look.least_width.clamp(0.0, 100.0),
+        least_width,
     }
 }
 

@@ -67,7 +67,7 @@ pub(crate) fn pictures(
             return Err(stopped());
         }
         let camera = film_frame.view.camera();
-        let legend = still_scene.legend(film_frame.time);
+        let legend = still_scene.legend(film_frame.time, options.size);
         let overlay = overlay.again(still_scene.look.legend.then_some(&legend), &camera);
         let near = camera.near(&around);
         let view = Viewpoint { camera, near };
@@ -273,7 +273,7 @@ fn picture_options(still_scene: &StillScene, options: &PictureFile) -> PictureOp
         size: options.size,
         samples: options.samples,
         background: (!options.transparent).then_some(look.background),
-        look: content::surface_look(look),
+        look: content::surface_look(look, still_scene.least_width(options.size)),
         occlusion: if look.occlusion {
             Occlusion::Fit
         } else {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::{Annotations, Legend, Overlay, OverlayOptions};
-use neurotess::render::{BoundingSphere, Camera, Gpu, MarkerShape};
+use neurotess::render::{BoundingSphere, Camera, Gpu, Look, MarkerShape};
 
-use crate::model::document::Look;
+use crate::model::document;
 use crate::model::film::FilmFrame;
 use crate::model::measuring::Figure;
 use crate::model::playback::said;
@@ -23,7 +23,7 @@ pub(crate) struct StillScene {
     /// Whether a window draws with the same device.
     pub(crate) shared: bool,
     pub(crate) content: SceneContent,
-    pub(crate) look: Look,
+    pub(crate) look: document::Look,
     pub(crate) states: Vec<u32>,
     pub(crate) spheres: Arc<Vec<BoundingSphere>>,
     /// What holds meshes that one can see through, for near planes.
@@ -56,10 +56,10 @@ impl StillScene {
         })
     }
 
-    /// Legend of a picture, with the time of the recording if there is one.
-    pub(super) fn legend(&self, time: Option<f64>) -> Legend {
+    /// Legend of a picture of this size, with the time of the recording if there is one.
+    pub(super) fn legend(&self, time: Option<f64>, size: [u32; 2]) -> Legend {
         let legend = self.content.legend.clone();
-        let legend = legend.with_widths(self.look.least_width, self.look.radius_factor());
+        let legend = legend.with_widths(self.least_width(size), self.look.radius_factor());
         match (&self.content.recording, time) {
             (Some((recording, _)), Some(time)) => {
                 let time = recording.time.nearest(time);
@@ -67,6 +67,13 @@ impl StillScene {
             }
             _ => legend,
         }
+    }
+
+    /// Least width (pixels) of neurites in a picture of this size.
+    pub(super) fn least_width(&self, size: [u32; 2]) -> f32 {
+        let instances = self.content.instances.iter();
+        let shown = instances.filter(|instance| !instance.hidden).count();
+        Look::width_at(self.look.least_width_of(shown), size)
     }
 
     /// Ends of the scale of the recording.
@@ -92,13 +99,14 @@ impl StillScene {
             .iter()
             .map(|film_frame| film_frame.view.camera())
             .collect();
-        let legend = self.legend(film_frames.first().and_then(|film_frame| film_frame.time));
+        let time = film_frames.first().and_then(|film_frame| film_frame.time);
+        let legend = self.legend(time, options.size);
         let overlay = OverlayOptions {
             legend: self.look.legend.then_some(legend),
             scale_bar: self.look.scale_bar.then_some(0.0),
+            axes: self.look.axes,
             background: (!options.transparent).then_some(self.look.background),
         };
         Overlay::new(&overlay, options.size, &cameras, &self.spheres)
     }
 }
-            axes: self.look.axes,

@@ -79,7 +79,7 @@ impl Legend {
     /// [`Look::least_width`](crate::Look::least_width); 0: not), with radii times a factor (1: not).
     #[must_use]
     pub fn with_widths(mut self, least: f32, radius_factor: f64) -> Self {
-        let least = (least > 0.0).then(|| format!("at least {least} px wide"));
+        let least = (least > 0.0).then(|| format!("≥ {} px wide", (10.0 * least).round() / 10.0));
         let thicker = (radius_factor != 1.0).then(|| format!("radii × {radius_factor}"));
         self.widths = match (thicker, least) {
             (Some(thicker), Some(least)) => format!("neurites: {thicker}, {least}"),
@@ -299,12 +299,9 @@ mod tests {
     fn what_differs_from_the_tracing_is_told() {
         let told = |least, factor| Legend::swatches("", []).with_widths(least, factor).widths;
         assert_eq!(told(0.0, 1.0), "");
-        assert_eq!(told(2.0, 1.0), "neurites at least 2 px wide");
+        assert_eq!(told(2.0, 1.0), "neurites ≥ 2 px wide");
         assert_eq!(told(0.0, 3.0), "neurites: radii × 3");
-        assert_eq!(
-            told(1.5, 0.5),
-            "neurites: radii × 0.5, at least 1.5 px wide"
-        );
+        assert_eq!(told(3.375, 0.5), "neurites: radii × 0.5, ≥ 3.4 px wide");
     }
 
     #[test]

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use neurotess::coloring::OwnColors;
-use neurotess::render::MOST_BUDGET;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
+use neurotess::render::{Look, MOST_BUDGET};
 
 use super::palette::{PaletteArg, PaletteParser, SetColor};
 use super::times::{MOST, times};
@@ -279,9 +279,11 @@ impl RenderArgs {
         (!self.transparent).then_some(color.unwrap_or([255; 3]))
     }
 
-    /// Least width (pixels) of neurites; 0: as wide as they are.
-    pub(crate) fn least_width(&self) -> f32 {
-        self.least_width.unwrap_or(0.0) as f32
+    /// Least width (pixels of this picture) of neurites, of which there are so many; 0: as wide as they are.
+    pub(crate) fn least_width(&self, neurons: usize) -> f32 {
+        let width = self.least_width.map(|width| width as f32);
+        let width = width.unwrap_or_else(|| Look::usual_least_width(neurons));
+        Look::width_at(width, self.size.0)
     }
 
     /// Factor on the radii of neurites.

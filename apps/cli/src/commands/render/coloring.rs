@@ -30,7 +30,9 @@ pub(crate) struct PictureColors {
     pub(crate) mesh_keys: Vec<u32>,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
-    /// Least width (pixels; 0: none) and factor on the radii of neurites, which the legend tells.
+    /// Number of neurons in the picture.
+    neurons: usize,
+    /// Least width (pixels of the picture; 0: none) and factor on the radii of neurites, which the legend tells.
     widths: (f32, f64),
     /// The colors of the legend that are closest to one another.
     pub(crate) closest: Option<ClosestColors>,
@@ -64,6 +66,16 @@ impl PictureColors {
     /// Adds the colors and names of meshes.
     pub(crate) fn add_meshes(&mut self, meshes: &SceneMeshes) {
         self.mesh_keys = self.coloring.add_meshes(&meshes.colors());
+    }
+
+    /// The widths of neurites become those of these options.
+    pub(crate) fn set_widths(&mut self, args: &RenderArgs) {
+        self.widths = (args.least_width(self.neurons), args.radius_factor());
+    }
+
+    /// Least width (pixels) of neurites; 0: as wide as they are.
+    pub(crate) fn least_width(&self) -> f32 {
+        self.widths.0
     }
 
     /// Whether pictures show one recording at several times.
@@ -164,10 +176,13 @@ pub(crate) fn of_pictures(
                 markers: None,
                 mesh_keys: Vec::new(),
                 series: None,
-                widths: (args.least_width(), args.radius_factor()),
+                neurons: 0,
+                widths: (0.0, 1.0),
             }
         }
     };
+    colored.neurons = of_cells.len();
+    colored.set_widths(args);
     colored.markers = markers::read(args, instances, &scheme, reporter)?;
     if let Some(markers) = &mut colored.markers {
         colored.coloring.add_markers(markers);
@@ -238,7 +253,8 @@ fn over_time(
         markers: None,
         mesh_keys: Vec::new(),
         series,
-        widths: (args.least_width(), args.radius_factor()),
+        neurons: 0,
+        widths: (0.0, 1.0),
         closest: None,
     };
     let (table, legend) = colored.picture(0)?;

@@ -33,7 +33,7 @@ pub(super) fn overlay(
     spheres: &[BoundingSphere],
 ) -> (Overlay, Vec<Camera>) {
     let options = OverlayOptions {
-        legend: (!args.no_legend).then(|| colored.coloring.legend.clone()),
+        legend: (!args.no_legend).then(|| colored.legend(0)),
         scale_bar: args.scale_bar.map(|bar| match bar {
             Fit::Auto => 0.0,
             Fit::Length(length) => length,
@@ -69,7 +69,7 @@ pub(super) fn draw(
         files,
         ..
     } = *job;
-    let options = picture_options(args);
+    let options = picture_options(args, colored.least_width());
     if options.samples_taken() != args.samples {
         let taken = options.samples_taken();
         reporter.warning(&format!("{} samples: {taken} are taken", args.samples));
@@ -136,7 +136,8 @@ pub(super) fn draw(
     Ok(stats)
 }
 
-pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
+/// `least_width`: of neurites (pixels).
+pub(super) fn picture_options(args: &RenderArgs, least_width: f32) -> PictureOptions {
     PictureOptions {
         size: args.size.0,
         samples: args.samples,
@@ -145,7 +146,7 @@ pub(super) fn picture_options(args: &RenderArgs) -> PictureOptions {
             light: args.light.0,
             wire: if args.wireframe { WIRE } else { 0.0 },
             contrast: args.background(),
-            least_width: args.least_width(),
+            least_width,
             ..Look::default()
         },
         occlusion: match args.ao {

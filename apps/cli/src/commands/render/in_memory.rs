@@ -175,7 +175,8 @@ impl Drawing {
             overlay: &overlay,
             files: &[],
         };
-        let source = PictureSource::new(gpu, &draw::picture_options(&args), &job, meshes)?;
+        let options = draw::picture_options(&args, colored.least_width());
+        let source = PictureSource::new(gpu, &options, &job, meshes)?;
         Ok(Self {
             args,
             cells,
@@ -219,7 +220,7 @@ impl Drawing {
         let Some(camera) = self.camera(picture) else {
             return Err(DrawError::Failed("there is no such picture".into()));
         };
-        let options = draw::picture_options(&self.args);
+        let options = draw::picture_options(&self.args, self.colored.least_width());
         if self.film.is_none() {
             let drawn = FixedFilm::new(
                 gpu,
@@ -259,13 +260,14 @@ impl Drawing {
         if self.args.size.0 != size {
             self.args.size = Size(size);
             self.film = None;
+            self.colored.set_widths(&self.args);
             let first = vec![camera];
             let args = &self.args;
             (self.overlay, _) = draw::overlay(args, &self.colored, first, &self.spheres);
         }
         let options = PictureOptions {
             samples,
-            ..draw::picture_options(&self.args)
+            ..draw::picture_options(&self.args, self.colored.least_width())
         };
         self.stoppable(stopped, |drawing| {
             drawing.drawn(gpu, picture, camera, &options)

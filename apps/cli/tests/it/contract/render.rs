@@ -373,6 +373,7 @@ fn wrong_usage_of_render_exits_with_2() {
         "render cell.swc -o cell.png --frames 3",
         "render cell.swc -o cell.png --light dim",
         "render cell.swc -o cell.png --ao -3",
+        "render cell.swc -o cell.png --least-width -1",
     ] {
         let run = work.run(wrong).exits(2);
         assert!(

@@ -54,8 +54,10 @@ pub struct Look {
     /// Opacity of transparent neurons, 0 to 1.
     #[serde(alias = "faint")]
     pub ghost_opacity: f32,
-    /// Least width (pixels) of neurites; 0: as they are.
-    pub least_width: f32,
+    /// Least width of neurites, in points of the window or pixels of pictures of usual size; 0: as they are. None: what
+    /// is usual for the number of neurons that show.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_width: Option<f32>,
     /// Factor on the radii of neurites in the picture; 1: as they were traced.
     pub radius_factor: f64,
     /// Which parts of cells are drawn.
@@ -217,7 +219,7 @@ impl Default for Look {
             highlight_selected: false,
             ghost_others: false,
             ghost_opacity: 0.25,
-            least_width: 0.0,
+            least_width: None,
             radius_factor: 1.0,
             parts: VisibleParts::All,
             own_colors: OwnColors::default(),
@@ -233,6 +235,14 @@ impl Look {
             true => self.radius_factor.clamp(0.1, 100.0),
             false => 1.0,
         }
+    }
+
+    /// Least width of neurites while so many neurons show, within bounds whatever a session says: in points of the
+    /// window, or pixels of pictures of usual size.
+    pub(crate) fn least_width_of(&self, neurons: usize) -> f32 {
+        let width = self.least_width.filter(|width| width.is_finite());
+        let width = width.map(|width| width.clamp(0.0, 100.0));
+        width.unwrap_or_else(|| neurotess::render::Look::usual_least_width(neurons))
     }
 
     /// What is taste in it, and survives into the next cell: palette, color map, background, light, legend. What
@@ -324,7 +334,7 @@ mod tests {
             color_by: ColorBy::Value,
             range: Some([1.0, 2.0]),
             ghost_others: true,
-            least_width: 2.0,
+            least_width: Some(2.0),
             radius_factor: 100.0,
             parts: VisibleParts::Neurites,
             cut: Some(Cut {

@@ -437,6 +437,11 @@ impl State {
     /// The source of a neuron.
     pub fn source_of(&self, neuron: usize) -> Option<&Source> {
         let neuron = self.document.neurons.get(neuron)?;
+    /// Number of neurons that show.
+    pub(crate) fn shown(&self) -> usize {
+        self.document.neurons.len() - self.document.neurons.hidden()
+    }
+
         self.sources.get(neuron.source)
     }
 

@@ -30,10 +30,17 @@ const FRAMES: usize = 90;
 impl Stage {
     /// What the current picture depends on. While the neurons stay the same, its time does not grow
     /// with their number.
-    pub(super) fn inputs(&mut self, state: &State, size: [u32; 2]) -> PictureInputs {
+    pub(super) fn inputs(
+        &mut self,
+        state: &State,
+        size: [u32; 2],
+        pixels_per_point: f32,
+    ) -> PictureInputs {
         let look = &state.document.look;
         let camera = state.view.camera();
-        let mut surface = content::surface_look(look);
+        // Less than a pixel would be fainter, so it is no less where points are smaller.
+        let least = look.least_width_of(state.shown()) * pixels_per_point.max(1.0);
+        let mut surface = content::surface_look(look, least);
         surface.clip = self.clip(state);
         let frozen = state.frozen.map(|view| {
             let camera = view.camera();
@@ -218,6 +225,7 @@ impl Stage {
         let halved = self.coarser > HALF_FROM;
         if halved {
             params.size = params.size.map(|n| n.div_ceil(2));
+            params.look.least_width *= 0.5;
         }
         let sub_pixels = if halved { 0.5 } else { 1.0 };
         let markers = self.markers.drawn(key, sub_pixels, Some(budget));

@@ -353,7 +353,7 @@ impl Stage {
             // Neurons were added or removed: the values do not belong to them yet.
             return Ok(self.texture_id());
         }
-        let inputs = self.inputs(state, size);
+        let inputs = self.inputs(state, size, ctx.pixels_per_point());
         self.update_clamped(state, inputs.instances)?;
         if self
             .shape

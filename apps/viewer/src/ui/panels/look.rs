@@ -36,10 +36,18 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
     ui.checkbox(&mut look.axes, "Axes");
     ui.checkbox(&mut look.wireframe, "Wireframe")
         .tip("The edges of the triangles");
-    slider(ui, &mut look.least_width, 0.0..=8.0, Some(1), |slider| {
+    let usual = look.least_width_of(state.shown());
+    let mut width = usual;
+    slider(ui, &mut width, 0.0..=8.0, Some(1), |slider| {
         slider.text("least width (px)")
     })
-    .tip("Thin neurites are drawn this wide, for figures; 0: as they are");
+    .tip(
+        "Thin neurites are drawn this wide, so that they can be seen; 0: as wide as they are, as more than 50 neurons are \
+         by themselves",
+    );
+    if width != usual {
+        look.least_width = Some(width);
+    }
     slider(
         ui,
         &mut look.radius_factor,
@@ -48,8 +56,7 @@ pub(super) fn show(state: &mut State, stage: &Stage, ui: &mut Ui) {
         |slider| slider.logarithmic(true).text("radius factor"),
     )
     .tip("Neurites are drawn with their radii times this, for figures; meshes are saved as traced");
-    let tip =
-        "Show everything as it was traced: all parts, no cut, no factor; colors and light stay";
+    let tip = "Show everything as it was traced: all parts, no cut, no factor, the usual least width; colors and light stay";
     if ui.button("Reset look").tip(tip).clicked() {
         state.requests.push(Edit::ResetLook.into());
     }

@@ -384,7 +384,10 @@ fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
     if look.legend && !matches!(pane, Pane::Right { .. }) {
         let told = screen.stage.legend().clone();
         overlay::legend(
-            told.with_widths(look.least_width, look.radius_factor()),
+            told.with_widths(
+                look.least_width_of(screen.state.shown()),
+                look.radius_factor(),
+            ),
             screen,
             rect,
             ui,
