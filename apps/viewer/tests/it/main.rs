@@ -17,6 +17,7 @@ mod plots;
 mod rebuilds;
 mod recordings;
 mod saving;
+mod screen;
 mod spines;
 mod static_mode;
 mod synapses;

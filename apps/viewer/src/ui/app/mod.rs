@@ -7,6 +7,7 @@ mod messages;
 mod palettes;
 mod plots;
 mod saving;
+mod screen;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -64,6 +65,8 @@ pub struct Viewer {
     theme: Option<(bool, u32)>,
     /// Whether frames are too slow for animations, once that is known.
     slow: Option<bool>,
+    /// Whether the window has been made to fit the screen.
+    fits_screen: bool,
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
     soma: SomaEdit,
@@ -118,6 +121,7 @@ impl Viewer {
             theme: None,
             slow: None,
             remembered: settings,
+            fits_screen: false,
             soma: SomaEdit::default(),
             without_caches: false,
             ticked: Instant::now(),
@@ -177,6 +181,7 @@ impl Viewer {
         let ctx = ui.ctx().clone();
         self.look(&ctx);
         for message in self.worker.messages() {
+        self.fit_screen(&ctx);
             self.take(message);
         }
         self.state.writing = self.worker.is_saving();
