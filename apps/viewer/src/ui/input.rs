@@ -6,11 +6,18 @@
 //! those up to the next one that changes the meaning of later ones: a mouse button, a shortcut that
 //! opens a dialog, Enter in a line of text.
 //!
+//! The rest does not wait for the next frame, which may be a second away, but for the next pass of the same frame:
+//! egui lays the window out again and shows only the last pass. Until then no picture is drawn.
+//!
 //! Shortcuts are found here too. They must match exactly: Ctrl+Shift+Z is not Ctrl+Z.
 
 use std::collections::VecDeque;
+use std::num::NonZeroUsize;
 
-use eframe::egui::{self, Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
+use eframe::egui::{
+    self, Context, Event, FullOutput, Key, KeyboardShortcut, Modifiers, Plugin, RawInput,
+    RepaintCause,
+};
 
 use crate::model::command::{Command, Toggles, listed};
 use crate::model::state::Dialog;
@@ -20,6 +27,9 @@ use crate::model::state::Dialog;
 const EVENT_FRAME: f64 = 1.0 / 60.0;
 /// Number of frames for which keys wait until a dialog's line of text has the keyboard.
 const PATIENCE: u32 = 6;
+
+/// Most passes of a frame, each with some of the waiting events: a second of fast clicks has 20.
+pub(crate) const MOST_PASSES: NonZeroUsize = NonZeroUsize::MIN.saturating_add(63);
 
 /// The kind of dialog that is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +87,8 @@ pub(crate) struct Input {
     patience: u32,
     /// The time (s) of the last frame.
     time: f64,
+    /// Whether a control whose size was not known has asked for another pass of this frame.
+    sized: bool,
     shortcuts: Vec<(KeyboardShortcut, Command)>,
 }
 
@@ -105,7 +117,7 @@ impl Input {
         self.open = open;
     }
 
-    /// Whether events wait for the next frame.
+    /// Whether events wait for the next pass.
     pub(crate) fn waits(&self) -> bool {
         !self.waiting.is_empty()
     }
@@ -196,6 +208,7 @@ impl Plugin for Input {
     }
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
+        self.sized &= ctx.current_pass_index() > 0;
         let focus = KeyFocus {
             text: ctx.text_edit_focused(),
             control: ctx.egui_wants_keyboard_input(),
@@ -206,6 +219,18 @@ impl Plugin for Input {
         let (events, time) = self.next(focus, events, now);
         input.events = events;
         input.time = input.time.map(|_| time);
+    }
+
+    fn output_hook(&mut self, _ctx: &Context, output: &mut FullOutput) {
+        let reasons = &mut output.platform_output.request_discard_reasons;
+        if self.waits() {
+            reasons.push(RepaintCause::new_reason("events wait"));
+        } else if self.sized {
+            // Once, as egui does by itself: a control that asks each time would take all passes.
+            reasons.clear();
+        } else {
+            self.sized = !reasons.is_empty();
+        }
     }
 }
 

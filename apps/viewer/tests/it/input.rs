@@ -8,7 +8,7 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::{Tab, Toggles, listed};
+use neurotess_viewer::command::{Edit, Tab, Toggles, listed};
 use neurotess_viewer::state::Dialog;
 
 use crate::common::{Window, gpu, run, settle, state, with_samples};
@@ -211,4 +211,26 @@ fn soma_at(window: &mut Window) -> Pos2 {
         .pixel_of(glam::DVec3::ZERO, size);
     let [x, y] = pixel.expect("in front");
     rect.min + Vec2::new(x as f32, y as f32)
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn all_clicks_that_wait_are_answered_in_one_frame() {
+    let mut window = with_samples(&[Kind::Star]);
+    let soma = soma_at(&mut window);
+    let beside = window.get_by_role(Role::Canvas).rect().right_bottom() - Vec2::splat(60.0);
+    let clicks = [soma, beside, soma, beside, soma];
+    let events = clicks.into_iter().flat_map(|at| {
+        let pressed = |pressed| button(at, PointerButton::Primary, pressed);
+        [Event::PointerMoved(at), pressed(true), pressed(false)]
+    });
+    let events: Vec<Event> = events.collect();
+    window.input_mut().events.extend(events);
+    let time = window.ctx.input(|input| input.time) + 4.0;
+    window.input_mut().time = Some(time);
+    let list = heard(&mut window);
+    window.step();
+    let selects = |c: &&Command| matches!(c, Command::Edit(Edit::Select(..) | Edit::SelectNone));
+    let selections = list.borrow().iter().filter(selects).count();
+    assert_eq!(selections, clicks.len(), "{:?}", list.borrow());
+    assert_eq!(state(&mut window).document.neurons.selected(), [0]);
 }

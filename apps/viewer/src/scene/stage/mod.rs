@@ -102,6 +102,8 @@ pub struct Stage {
     picks: Option<Picks>,
     /// Whether `picks` belong to an earlier picture.
     picks_stale: bool,
+    /// Whether they do not show what the current picture would, which has been passed over.
+    picks_elsewhere: bool,
     resolver: Option<Resolver>,
     mask: Option<MaskKey>,
     /// Triangles and patches that the picture at rest draws, and all patches, once they are
@@ -205,6 +207,7 @@ impl Stage {
             frames: VecDeque::new(),
             picks: None,
             picks_stale: false,
+            picks_elsewhere: false,
             resolver: None,
             mask: None,
             counts: None,
@@ -339,6 +342,7 @@ impl Stage {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<Option<egui::TextureId>, DeviceError> {
+        self.picks_elsewhere = false;
         self.take_built(state, ctx)?;
         self.update_templates(state, ctx)?;
         self.update_markers(state, ctx)?;
@@ -389,6 +393,20 @@ impl Stage {
         state.counters.static_picture = self.static_figures();
         self.gpu.check()?;
         Ok(self.texture_id())
+    }
+
+    /// Draws nothing, since more events of the same frame are still to be handled: the picture after the last of them
+    /// is drawn. What changes only the selection leaves valid what is under the cursor.
+    pub(crate) fn pass_over(
+        &mut self,
+        state: &State,
+        size: [u32; 2],
+        pixels_per_point: f32,
+    ) -> Option<egui::TextureId> {
+        let inputs = self.inputs(state, size, pixels_per_point);
+        let before = self.drawn.map(|d| (d.params, d.instances));
+        self.picks_elsewhere = before != Some((inputs.params, inputs.instances));
+        self.texture_id()
     }
 
     fn rebuilds(&self, state: &State) -> Rebuilds {

@@ -52,7 +52,8 @@ pub(super) struct MaskKey {
 impl Stage {
     /// What is at a pixel. Nothing while something moves.
     pub fn hit_at(&self, x: f32, y: f32) -> Option<CursorHit> {
-        self.picks.as_ref()?.at(x, y)
+        let picks = self.picks.as_ref().filter(|_| !self.picks_elsewhere)?;
+        picks.at(x, y)
     }
 
     /// The name of the opaque mesh at a pixel, where nothing else is. Nothing while something moves.
@@ -64,7 +65,7 @@ impl Stage {
 
     /// Whether it is known what is at each pixel of the current picture.
     pub fn can_pick(&self) -> bool {
-        self.picks.is_some() && !self.picks_stale
+        self.picks.is_some() && !self.picks_stale && !self.picks_elsewhere
     }
 
     pub(super) fn take_ids(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {

@@ -27,7 +27,7 @@ use crate::model::settings::Settings;
 use crate::model::state::{Dialog, Effect, State};
 use crate::scene::stage::Stage;
 use crate::ui::file_panel::FilePanel;
-use crate::ui::input::Input;
+use crate::ui::input::{Input, MOST_PASSES};
 use crate::ui::motion::Motion;
 use crate::ui::panels::{self, Screen};
 use autosave::Autosave;
@@ -98,6 +98,7 @@ impl Viewer {
     ) -> Result<Self, DeviceError> {
         let waker = ctx.clone();
         ctx.add_plugin(Input::new());
+        ctx.options_mut(|options| options.max_passes = MOST_PASSES);
         let stage = Stage::new(render)?;
         let mut state = State::new(settings.clone());
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || waker.request_repaint());
@@ -120,8 +121,8 @@ impl Viewer {
             full_screen: None,
             theme: None,
             slow: None,
-            remembered: settings,
             fits_screen: false,
+            remembered: settings,
             soma: SomaEdit::default(),
             without_caches: false,
             ticked: Instant::now(),
@@ -180,8 +181,8 @@ impl Viewer {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         self.look(&ctx);
-        for message in self.worker.messages() {
         self.fit_screen(&ctx);
+        for message in self.worker.messages() {
             self.take(message);
         }
         self.state.writing = self.worker.is_saving();
@@ -194,7 +195,8 @@ impl Viewer {
         self.tick();
         self.turn(&ctx);
         self.split();
-        self.show_panels(ui);
+        let waits = ctx.with_plugin(|input: &mut Input| input.waits());
+        self.show_panels(waits == Some(true), ui);
         for command in std::mem::take(&mut self.state.requests) {
             self.run(command);
             ctx.request_repaint();
@@ -242,8 +244,9 @@ impl Viewer {
         }
     }
 
-    /// Shows all panels; keeps an error that ends the program in `fatal`.
-    fn show_panels(&mut self, ui: &mut egui::Ui) {
+    /// Shows all panels; keeps an error that ends the program in `fatal`. `passed_over`: whether another pass of this
+    /// frame follows.
+    fn show_panels(&mut self, passed_over: bool, ui: &mut egui::Ui) {
         let [reading, saving, marking] = self.worker.progress();
         let searching = self.crossing_search.progress();
         let mut screen = Screen {
@@ -253,6 +256,7 @@ impl Viewer {
             motion: &mut self.motion,
             files: &mut self.files,
             tasks: [reading, saving, marking, self.plots.progress(), searching],
+            passed_over,
             failed: None,
         };
         panels::show(&mut screen, ui);

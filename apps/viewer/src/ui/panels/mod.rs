@@ -66,6 +66,8 @@ pub(crate) struct Screen<'a> {
     pub(crate) files: &'a mut Option<FilePanel>,
     /// Progress of reading, of saving, of reading synapses or points, and of reading traces, while they run.
     pub(crate) tasks: [Option<Progress>; 5],
+    /// Whether another pass of this frame follows, which draws the picture.
+    pub(crate) passed_over: bool,
     /// The error, if the picture could not be drawn.
     pub(crate) failed: Option<DeviceError>,
 }

@@ -431,6 +431,11 @@ fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
 impl Screen<'_> {
     /// Draws the picture in this size; keeps the error in `failed` if it cannot.
     fn picture(&mut self, size: [u32; 2], ctx: &egui::Context) -> Option<egui::TextureId> {
+        if self.passed_over {
+            return self
+                .stage
+                .pass_over(self.state, size, ctx.pixels_per_point());
+        }
         match self.stage.update(self.state, size, ctx) {
             Ok(texture) => texture,
             Err(e) => {
