@@ -81,6 +81,12 @@ impl FilePanel {
         self.purpose == purpose
     }
 
+    /// Its purpose, when it is shown again: its line gets the keyboard.
+    pub(crate) fn again(&mut self) -> FilePurpose {
+        self.fresh = true;
+        self.purpose
+    }
+
     fn enter(&mut self, folder: &Path) {
         let folder = if folder.as_os_str().is_empty() {
             Path::new(".")

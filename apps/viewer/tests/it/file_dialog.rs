@@ -98,6 +98,17 @@ fn a_session_is_not_replaced_unasked() {
     let kept = || fs::read_to_string(&other).expect("there");
     assert_eq!(kept(), "of someone else");
     assert!(matches!(state(&mut window).dialog, Dialog::Replace(..)));
+    // Another name is to be typed.
+    window.get_by_label("Cancel").click();
+    window.run_steps(6);
+    assert!(matches!(state(&mut window).dialog, Dialog::Files(_)));
+    let line = window.get_by_role(Role::TextInput);
+    assert!(
+        line.value()
+            .is_some_and(|typed| typed.ends_with("other.neurotess"))
+    );
+    key(&mut window, Key::Enter, Modifiers::NONE);
+    window.run_steps(3);
     window.get_by_label("Replace").click();
     settle(&mut window);
     assert!(kept().contains("version = 1"), "{}", kept());

@@ -11,7 +11,9 @@ use crate::ui::file_panel::FilePanel;
 
 pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
     let dialog = std::mem::take(&mut state.dialog);
-    if !matches!(dialog, Dialog::Files(_)) {
+    // Behind the question whether a file may be replaced, the file dialog waits.
+    let keeps = |dialog: &Dialog| matches!(dialog, Dialog::Files(_) | Dialog::Replace(..));
+    if !keeps(&dialog) {
         *panel = None;
     }
     let escape = ctx.input(|i| i.key_pressed(Key::Escape));
@@ -21,13 +23,17 @@ pub(super) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
         Dialog::Problems => problems(state, ctx),
         Dialog::Palette(text, chosen) => palette(state, text, chosen, ctx),
         Dialog::Files(purpose) => files(state, purpose, panel, ctx),
-        Dialog::Replace(path, command) => replace(state, path, command, ctx),
+        Dialog::Replace(path, command) => replace(state, path, command, panel, ctx),
         Dialog::Unsaved(command) => leaving::unsaved(state, command, ctx),
         Dialog::Recover(written) => leaving::recover(state, written, ctx),
     };
     let had = !matches!(stays, Dialog::Nothing);
-    state.dialog = if escape { Dialog::Nothing } else { stays };
-    if !matches!(state.dialog, Dialog::Files(_)) {
+    state.dialog = match (escape, stays) {
+        (false, stays) => stays,
+        (true, Dialog::Replace(..)) => back(panel),
+        (true, _) => Dialog::Nothing,
+    };
+    if !keeps(&state.dialog) {
         *panel = None;
     }
     if escape && had {
@@ -51,13 +57,23 @@ fn files(
         });
     let mut open = true;
     if let Some(command) = shown.show(ctx, &mut open) {
-        return state.request(command);
+        let asks = state.request(command);
+        *panel = Some(shown);
+        return asks;
     }
     if !open {
         return Dialog::Nothing;
     }
     *panel = Some(shown);
     Dialog::Files(purpose)
+}
+
+/// What is shown after a file was not to be replaced: the file dialog that the question came from, if it was one.
+fn back(panel: &mut Option<FilePanel>) -> Dialog {
+    match panel {
+        Some(panel) => Dialog::Files(panel.again()),
+        None => Dialog::Nothing,
+    }
 }
 
 const MOUSE: [(&str, &str); 9] = [
@@ -262,6 +278,7 @@ fn replace(
     state: &mut State,
     path: std::path::PathBuf,
     command: Box<Command>,
+    panel: &mut Option<FilePanel>,
     ctx: &Context,
 ) -> Dialog {
     let mut answer = None;
@@ -288,7 +305,7 @@ fn replace(
             state.requests.push(*command);
             Dialog::Nothing
         }
-        Some(false) => Dialog::Nothing,
+        Some(false) => back(panel),
         None => Dialog::Replace(path, command),
     }
 }
