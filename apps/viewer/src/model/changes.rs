@@ -1,29 +1,51 @@
 //! Which edits are in a session's file, and which would be lost.
 
-/// Counts edits: those that were made, and those that were made when the session was saved last.
+/// Numbers what a session keeps: a number for each document, which an undo brings back, and one for what cannot be
+/// undone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
     made: u64,
-    saved: u64,
+    now: [u64; 2],
+    saved: [u64; 2],
 }
 
 impl Changes {
-    /// Notes an edit.
+    /// Notes an edit of the document.
     pub(crate) fn note(&mut self) {
         self.made += 1;
+        self.now[0] = self.made;
+    }
+
+    /// Notes a change that cannot be undone.
+    pub(crate) fn note_lasting(&mut self) {
+        self.made += 1;
+        self.now[1] = self.made;
+    }
+
+    /// Notes that the document is that of a number again.
+    pub(crate) fn note_return(&mut self, to: u64) {
+        if self.now[0] != to {
+            self.made += 1;
+            self.now[0] = to;
+        }
+    }
+
+    /// The number of the document.
+    pub(crate) fn document(&self) -> u64 {
+        self.now[0]
     }
 
     /// Notes that the session has all edits.
     pub(crate) fn note_saved(&mut self) {
-        self.saved = self.made;
+        self.saved = self.now;
     }
 
     /// Whether edits would be lost.
     pub fn unsaved(&self) -> bool {
-        self.made != self.saved
+        self.now != self.saved
     }
 
-    /// Number of edits that were made: another one after each.
+    /// Number of changes that were made: another one after each.
     pub(crate) fn made(&self) -> u64 {
         self.made
     }
@@ -87,6 +109,13 @@ mod tests {
             asks(&mut state, Command::Quit),
             "the file has it the other way"
         );
+        state.run(Command::Redo);
+        assert!(!asks(&mut state, Command::Quit), "as it is in the file");
+        state.run(Edit::Select(vec![0], false));
+        state.run(Command::Undo);
+        assert!(!asks(&mut state, Command::Quit), "a selection is no work");
+        state.run(Command::AddKeyView);
+        assert!(asks(&mut state, Command::Quit));
     }
 
     #[test]

@@ -8,21 +8,33 @@ const MOST: usize = 200;
 /// Documents before and after the current one.
 #[derive(Debug, Default)]
 pub struct History {
-    before: Vec<(&'static str, Document)>,
-    after: Vec<(&'static str, Document)>,
+    before: Vec<Step>,
+    after: Vec<Step>,
     joining: Option<&'static str>,
 }
 
+/// A document, with its number among all that there were, and the name of the edit beside it.
+#[derive(Debug)]
+struct Step {
+    name: &'static str,
+    document: Document,
+    number: u64,
+}
+
 impl History {
-    /// Keeps the document before an edit. Joining edits of the same name in a row count as one.
-    pub fn keep(&mut self, name: &'static str, document: Document, joins: bool) {
+    /// Keeps the document before an edit, with its number. Joining edits of the same name in a row count as one.
+    pub fn keep(&mut self, name: &'static str, (document, number): (Document, u64), joins: bool) {
         self.after.clear();
         let goes_on = joins && self.joining == Some(name);
         self.joining = joins.then_some(name);
         if goes_on {
             return;
         }
-        self.before.push((name, document));
+        self.before.push(Step {
+            name,
+            document,
+            number,
+        });
         if self.before.len() > MOST {
             self.before.remove(0);
         }
@@ -33,44 +45,55 @@ impl History {
         self.joining = None;
     }
 
-    /// Replaces the document by that before the last edit; returns the edit's name.
-    pub fn undo(&mut self, document: &mut Document) -> Option<&'static str> {
-        let (name, before) = self.before.pop()?;
-        self.after.push((name, std::mem::replace(document, before)));
+    /// Replaces the document and its number by those before the last edit; returns the edit's name.
+    pub fn undo(&mut self, document: &mut Document, number: &mut u64) -> Option<&'static str> {
+        let mut step = self.before.pop()?;
+        let name = step.exchange(document, number);
+        self.after.push(step);
         Some(name)
     }
 
     /// Reverts the last undo; returns the edit's name.
-    pub fn redo(&mut self, document: &mut Document) -> Option<&'static str> {
-        let (name, after) = self.after.pop()?;
-        self.before.push((name, std::mem::replace(document, after)));
+    pub fn redo(&mut self, document: &mut Document, number: &mut u64) -> Option<&'static str> {
+        let mut step = self.after.pop()?;
+        let name = step.exchange(document, number);
+        self.before.push(step);
         Some(name)
     }
 
     /// Names of the edits that an undo and a redo would concern.
     pub fn names(&self) -> [Option<&'static str>; 2] {
-        [&self.before, &self.after].map(|list| list.last().map(|(name, _)| *name))
+        [&self.before, &self.after].map(|list| list.last().map(|step| step.name))
     }
 
     /// Adds a neuron that was opened to all documents, so that an undo does not close it.
     pub fn opened(&mut self, neuron: &Neuron) {
-        for (_, document) in self.before.iter_mut().chain(&mut self.after) {
+        for Step { document, .. } in self.before.iter_mut().chain(&mut self.after) {
             document.neurons.push(neuron.clone());
         }
     }
 
     /// Adds traces of a session that was opened to all documents.
     pub fn opened_traces(&mut self, traces: &[Trace]) {
-        for (_, document) in self.before.iter_mut().chain(&mut self.after) {
+        for Step { document, .. } in self.before.iter_mut().chain(&mut self.after) {
             document.traces.extend_from_slice(traces);
         }
     }
 
     /// Adds dimensions of a session that was opened to all documents.
     pub fn opened_dimensions(&mut self, dimensions: &[Dimension]) {
-        for (_, document) in self.before.iter_mut().chain(&mut self.after) {
+        for Step { document, .. } in self.before.iter_mut().chain(&mut self.after) {
             document.dimensions.extend_from_slice(dimensions);
         }
+    }
+}
+
+impl Step {
+    /// Exchanges its document with the current one; returns the edit's name.
+    fn exchange(&mut self, document: &mut Document, number: &mut u64) -> &'static str {
+        std::mem::swap(&mut self.document, document);
+        std::mem::swap(&mut self.number, number);
+        self.name
     }
 }
 
@@ -82,25 +105,26 @@ mod tests {
     #[test]
     fn drags_are_one_edit_and_opening_is_none() {
         let mut history = History::default();
-        let mut document = Document::default();
+        let (mut document, mut number) = (Document::default(), 7);
         for level in 1..5 {
-            history.keep("Detail", document.clone(), true);
+            history.keep("Detail", (document.clone(), number), true);
+            number += 1;
             document.detail.level = level;
         }
         history.end_joining();
-        history.keep("Detail", document.clone(), true);
+        history.keep("Detail", (document.clone(), number), true);
         document.detail.level = 9;
         let neuron = Neuron::new(SourceId(0), "n".into());
         history.opened(&neuron);
         document.neurons.push(neuron);
-        assert_eq!(history.undo(&mut document), Some("Detail"));
+        assert_eq!(history.undo(&mut document, &mut number), Some("Detail"));
         assert_eq!((document.detail.level, document.neurons.len()), (4, 1));
-        assert_eq!(history.undo(&mut document), Some("Detail"));
-        assert_eq!(document.detail, Default::default());
-        assert_eq!(history.undo(&mut document), None);
+        assert_eq!(history.undo(&mut document, &mut number), Some("Detail"));
+        assert_eq!((document.detail, number), (Default::default(), 7));
+        assert_eq!(history.undo(&mut document, &mut number), None);
         assert_eq!(history.names(), [None, Some("Detail")]);
-        history.redo(&mut document);
-        history.redo(&mut document);
+        history.redo(&mut document, &mut number);
+        history.redo(&mut document, &mut number);
         assert_eq!(document.detail.level, 9);
     }
 }

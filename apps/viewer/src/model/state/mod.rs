@@ -245,9 +245,10 @@ impl State {
             Command::Edit(edit) => self.edit(edit),
             Command::Undo => {
                 let y_down = self.document.y_down;
-                self.status = match self.history.undo(&mut self.document) {
+                let mut number = self.changes.document();
+                self.status = match self.history.undo(&mut self.document, &mut number) {
                     Some(name) => {
-                        self.changes.note();
+                        self.changes.note_return(number);
                         format!("Undone: {}", name.to_lowercase())
                     }
                     None => "Nothing to undo".into(),
@@ -257,9 +258,10 @@ impl State {
             }
             Command::Redo => {
                 let y_down = self.document.y_down;
-                self.status = match self.history.redo(&mut self.document) {
+                let mut number = self.changes.document();
+                self.status = match self.history.redo(&mut self.document, &mut number) {
                     Some(name) => {
-                        self.changes.note();
+                        self.changes.note_return(number);
                         format!("Redone: {}", name.to_lowercase())
                     }
                     None => "Nothing to redo".into(),
@@ -350,13 +352,13 @@ impl State {
             Command::CopyDimensions(which) => self.copy_dimensions(which),
             Command::AddKeyView => {
                 self.key_views.push(self.view);
-                self.changes.note();
+                self.changes.note_lasting();
                 self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
             }
             Command::DropKeyView(which) => {
                 if which < self.key_views.len() {
                     self.key_views.remove(which);
-                    self.changes.note();
+                    self.changes.note_lasting();
                 }
             }
             Command::OpenPoints(path) => {
@@ -382,7 +384,8 @@ impl State {
         let spreads = matches!(edit, Edit::SetGrid(_) | Edit::Duplicate(_));
         edit.apply(&mut self.document);
         if self.document != before {
-            self.history.keep(name, before, joins);
+            let number = self.changes.document();
+            self.history.keep(name, (before, number), joins);
             if is_work {
                 self.changes.note();
             }
@@ -434,14 +437,14 @@ impl State {
         self.forget_lost_markers();
     }
 
-    /// The source of a neuron.
-    pub fn source_of(&self, neuron: usize) -> Option<&Source> {
-        let neuron = self.document.neurons.get(neuron)?;
     /// Number of neurons that show.
     pub(crate) fn shown(&self) -> usize {
         self.document.neurons.len() - self.document.neurons.hidden()
     }
 
+    /// The source of a neuron.
+    pub fn source_of(&self, neuron: usize) -> Option<&Source> {
+        let neuron = self.document.neurons.get(neuron)?;
         self.sources.get(neuron.source)
     }
 
