@@ -46,14 +46,14 @@ fn save(state: &mut State, command: Command) {
     }
 }
 
-const FORMATS: [Format; 6] = [
-    Format::Ply,
-    Format::Obj,
-    Format::Stl,
-    Format::Glb,
-    Format::Off,
-    Format::Vtu,
-];
+/// What a format is called in the list: files of both versions of MSH end alike.
+fn title(format: Format) -> &'static str {
+    match format {
+        Format::Msh => "msh 4.1",
+        Format::Msh2 => "msh 2.2",
+        other => other.name(),
+    }
+}
 
 fn meshes(state: &mut State, ui: &mut Ui) {
     heading(ui, "Meshes");
@@ -67,11 +67,11 @@ fn meshes(state: &mut State, ui: &mut Ui) {
         ui.label("format");
         ComboBox::from_id_salt("format")
             .width(70.0)
-            .selected_text(form.mesh.format.extension())
+            .selected_text(title(form.mesh.format))
             .show_ui(ui, |ui| {
-                for format in FORMATS {
+                for format in Format::ALL {
                     if ui
-                        .selectable_value(&mut form.mesh.format, format, format.extension())
+                        .selectable_value(&mut form.mesh.format, format, title(format))
                         .clicked()
                     {
                         let path = mesh_file(Path::new(&form.mesh_out), format);
