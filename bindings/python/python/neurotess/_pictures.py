@@ -245,8 +245,9 @@ def render(
     perspective, so that lengths are true at all depths (True, or the height of the picture in µm).
 
     Look: `wireframe`; of neurites `least_width` (1.5 pixels of pictures of up to 960, proportionally more in larger
-    ones; 0: as wide as they are, as of more than 50 neurons), `radius_factor`, `radius` (µm) of points without one and `min_radius`; `light`
-    (``"soft"``, ``"flat"`` or a direction), `ao` (radius of ambient occlusion, µm), `lod` with `level`, `pixels` or `budget`.
+    ones; 0: as wide as they are, which is usual for more than 50 neurons), `radius_factor`, `radius` (µm) of points
+    without one and `min_radius`; `light` (``"soft"``, ``"flat"`` or a direction), `ao` (radius of ambient occlusion,
+    µm), `lod` with `level`, `pixels` or `budget`.
 
     Synapses of a circuit's cells: `synapses` (True, or names of `Circuit.edges`), `synapse_side`; or the `points` of
     a CSV file with columns x, y and z (µm). `marker_color_by` is a number that each has; `marker_shape`
