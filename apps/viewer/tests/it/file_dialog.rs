@@ -70,7 +70,7 @@ fn no_key_reaches_the_scene_while_a_dialog_is_open() {
     state(&mut window).run(Command::AskFiles(FilePurpose::Open));
     window.run_steps(8);
     // Nothing has the keyboard, as after a click beside the line.
-    let focused = window.ctx.memory(eframe::egui::Memory::focused);
+    let focused = window.ctx.memory(egui::Memory::focused);
     let line = focused.expect("the line has the keyboard");
     window.ctx.memory_mut(|memory| memory.surrender_focus(line));
     window.step();

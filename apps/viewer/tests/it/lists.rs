@@ -215,7 +215,7 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     let type_in = |window: &mut Window, text: String| {
         window.event(Event::Text(text));
         window.step();
-        window.key_press(eframe::egui::Key::Tab);
+        window.key_press(egui::Key::Tab);
         window.run_steps(3);
     };
     let typed = |window: &Window| {
@@ -237,7 +237,7 @@ fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
         window.query_by_label("purkinje_1.swc").is_none(),
         "only what fits"
     );
-    window.key_press(eframe::egui::Key::Escape);
+    window.key_press(egui::Key::Escape);
     window.step();
     state(&mut window).settings.folder = folder.path().join("reconstructions");
     run(&mut window, Command::AskFiles(FilePurpose::SaveSession));

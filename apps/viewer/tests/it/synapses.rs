@@ -64,7 +64,7 @@ fn seen(window: &mut Window) -> Vec<(MarkerRef, Pos2)> {
             let [x, y] = [x, y].map(|n| n as f32 + 0.5);
             let marker = stage.hit_at(x, y).and_then(|hit| hit.marker());
             if let Some(marker) = marker.filter(|&marker| known.insert(marker)) {
-                found.push((marker, rect.min + eframe::egui::Vec2::new(x, y)));
+                found.push((marker, rect.min + egui::Vec2::new(x, y)));
             }
         }
     }

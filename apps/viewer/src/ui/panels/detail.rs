@@ -181,6 +181,9 @@ fn counters(state: &State, ui: &mut Ui) {
     }
 }
 
+/// Height (points) of the names of lines in the graph.
+const LINE: f32 = 11.0;
+
 /// A graph of the milliseconds of the last frames, with lines at 16.7 and 100.
 fn graph(frames: &[f32], ui: &mut Ui) {
     let size = vec2(ui.available_width().min(260.0), 64.0);
@@ -190,7 +193,8 @@ fn graph(frames: &[f32], ui: &mut Ui) {
     painter.rect_filled(rect, 4.0, visuals.extreme_bg_color);
     let most = frames.iter().copied().fold(33.3_f32, f32::max) * 1.1;
     let y = |ms: f32| rect.bottom() - rect.height() * (ms / most).min(1.0);
-    for ms in [16.7, 100.0] {
+    let mut above = f32::NEG_INFINITY;
+    for ms in [100.0, 16.7] {
         if ms < most {
             let line = [
                 Pos2::new(rect.left(), y(ms)),
@@ -200,6 +204,11 @@ fn graph(frames: &[f32], ui: &mut Ui) {
                 line,
                 Stroke::new(1.0, visuals.weak_text_color().gamma_multiply(0.4)),
             );
+            // Where the lines are close, the lower one has no room for its name.
+            if y(ms) - above < LINE {
+                continue;
+            }
+            above = y(ms);
             let at = Pos2::new(rect.right() - 3.0, y(ms) - 1.0);
             let text = format!("{ms:.0} ms");
             let font = egui::FontId::proportional(9.0);

@@ -138,14 +138,20 @@ fn hint(tool: &Measuring, rect: Rect, ui: &Ui) {
              Esc goes back."
         }
     };
+    // Between the axes and the scale bar, or above them where there is no room.
+    let between = rect.width() - 2.0 * (0.18 * rect.width() + 60.0).max(110.0);
+    let (above, most) = match between >= 180.0 {
+        true => (14.0, between.min(420.0)),
+        false => (96.0, (rect.width() - 40.0).clamp(120.0, 420.0)),
+    };
     Area::new(Id::unique("measuring hint").with(rect.left() as i32))
         .order(Order::Middle)
         .interactable(false)
-        .fixed_pos(rect.center_bottom() - vec2(0.0, 14.0))
+        .fixed_pos(rect.center_bottom() - vec2(0.0, above))
         .pivot(Align2::CENTER_BOTTOM)
         .show(ui.ctx(), |ui| {
             plate(ui).show(ui, |ui| {
-                ui.set_max_width((rect.width() - 320.0).clamp(180.0, 420.0));
+                ui.set_max_width(most);
                 ui.label(text);
             });
         });
