@@ -1,5 +1,6 @@
 //! Circuits in the window: colors of their cells, reports and spikes played back.
 
+use std::fs;
 use std::path::Path;
 
 use eframe::egui::Key;
@@ -14,7 +15,8 @@ use neurotess_viewer::save::{FilmOptions, PictureFile};
 
 use crate::common::circuit::{make_sticks, with_circuit, write_circuit};
 use crate::common::{
-    Window, differing, gpu, rest, run, set_look, settle, snapshot, state, viewer, wait, window,
+    SMALL, Window, differing, gpu, rest, run, set_look, settle, snapshot, state, viewer, wait,
+    window, window_of,
 };
 
 /// The distinct colors of the picture alone, without its legend, roughly.
@@ -174,7 +176,7 @@ fn a_report_is_played_stepped_and_saved() {
     let session = folder.path().join("a.neurotess");
     run(&mut window, Command::SaveSession(session.clone()));
     let document = state(&mut window).document.clone();
-    let text = std::fs::read_to_string(&session).expect("written");
+    let text = fs::read_to_string(&session).expect("written");
     assert!(text.contains("report = \"voltage.h5\""), "{text}");
     rest(&mut window);
     let before = window.render().expect("a picture");
@@ -307,7 +309,7 @@ fn a_report_without_a_circuit_waits_for_it() {
 }
 
 fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).expect("a folder").flatten();
+    let entries = fs::read_dir(folder).expect("a folder").flatten();
     let mut names: Vec<String> = entries
         .map(|e| e.file_name().to_string_lossy().into_owned())
         .collect();
@@ -336,7 +338,7 @@ fn a_film_runs_through_the_time_of_a_report() {
     run(&mut window, Command::SaveFilm(film.clone()));
     let five: Vec<String> = (0..5).map(|i| format!("f_{i:04}.png")).collect();
     assert_eq!(names(&out), five, "{:?}", state(&mut window).problems);
-    let bytes = |i: usize| std::fs::read(out.join(&five[i])).expect("there");
+    let bytes = |i: usize| fs::read(out.join(&five[i])).expect("there");
     assert_ne!(bytes(0), bytes(4));
     // Two views and the time: as many as from view to view, and one more.
     for side in [Side::Front, Side::Iso] {
@@ -392,7 +394,7 @@ fn ffmpeg_makes_a_video_of_a_film() {
     };
     run(&mut window, Command::SaveFilm(film));
     assert_eq!(state(&mut window).problems, []);
-    let video = std::fs::read(folder.path().join("f.mp4")).expect("a video");
+    let video = fs::read(folder.path().join("f.mp4")).expect("a video");
     assert_eq!(&video[4..8], b"ftyp");
 }
 
@@ -422,7 +424,7 @@ fn a_film_that_is_stopped_leaves_whole_pictures() {
     let names = names(&out);
     assert!(names.len() < 400, "{}", names.len());
     for name in &names {
-        let bytes = std::fs::read(out.join(name)).expect("there");
+        let bytes = fs::read(out.join(name)).expect("there");
         // Every file is whole: it ends as PNG does.
         let whole = bytes.starts_with(b"\x89PNG") && bytes.ends_with(b"IEND\xaeB`\x82");
         assert!(whole, "{name}");
@@ -432,4 +434,23 @@ fn a_film_that_is_stopped_leaves_whole_pictures() {
         why.contains(&format!("stopped after {} of 501", names.len())),
         "{why}"
     );
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn look_lists_the_reports_of_a_circuit_before_one_shows() {
+    let mut window = window_of(SMALL);
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    write_circuit(folder.path(), 2, 1, 2);
+    let simulation = r#"{"network": "circuit_config.json", "output": {"output_dir": "."},
+        "run": {"tstop": 10.0}, "reports": {"voltage": {"variable_name": "v"}}}"#;
+    let file = folder.path().join("simulation_config.json");
+    fs::write(file, simulation).expect("written");
+    run(
+        &mut window,
+        Command::Open(vec![folder.path().to_path_buf()]),
+    );
+    run(&mut window, Command::Show(Tab::Look));
+    assert!(state(&mut window).document.report.is_none());
+    window.get_by_label("report");
 }

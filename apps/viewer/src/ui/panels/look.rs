@@ -120,6 +120,8 @@ fn colors(state: &mut State, look: &mut Look, bar: bool, ui: &mut Ui) {
         match look.color_by {
             ColorBy::Attribute => attribute(state, look, ui),
             ColorBy::Value => report(state, ui),
+            // Choosing one colors by its values.
+            _ if !state.circuits.reports().is_empty() => report(state, ui),
             _ => {}
         }
         if maps_cells(look, bar) {
