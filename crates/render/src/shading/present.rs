@@ -25,6 +25,8 @@ pub struct Outlines {
     pub width: u32,
     /// Color of outlines around what is selected.
     pub selected: Rgb,
+    /// Opacity, 0 to 1, of outlines around whole instances that are selected, not around a part of one.
+    pub opacity: f32,
     /// Color of outlines around what is under the cursor.
     pub hovered: Rgb,
 }
@@ -34,10 +36,14 @@ impl Default for Outlines {
         Self {
             width: 2,
             selected: [255, 140, 0],
+            opacity: OPACITY,
             hovered: [0, 190, 170],
         }
     }
 }
+
+/// Opacity of outlines.
+const OPACITY: f32 = 0.92;
 
 /// Twin of `Present` in `present.wgsl`.
 #[repr(C)]
@@ -45,7 +51,7 @@ impl Default for Outlines {
 pub(crate) struct Present {
     pub(crate) size: [u32; 2],
     pub(crate) width: u32,
-    pub(crate) spare: u32,
+    pub(crate) opacity: f32,
     pub(crate) selected: [f32; 4],
     pub(crate) hovered: [f32; 4],
 }
@@ -53,11 +59,14 @@ pub(crate) struct Present {
 impl Present {
     pub(crate) fn new(size: [u32; 2], outlines: Option<&Outlines>) -> Self {
         let look = outlines.copied().unwrap_or_default();
-        let color = |[r, g, b]: Rgb| [r, g, b, 235].map(|c| f32::from(c) / 255.0);
+        let color = |[r, g, b]: Rgb| {
+            let [r, g, b] = [r, g, b].map(|c| f32::from(c) / 255.0);
+            [r, g, b, OPACITY]
+        };
         Self {
             size,
             width: outlines.map_or(0, |outlines| outlines.width),
-            spare: 0,
+            opacity: look.opacity.clamp(0.0, OPACITY),
             selected: color(look.selected),
             hovered: color(look.hovered),
         }

@@ -8,7 +8,8 @@ struct Present {
     size: vec2<u32>,
     // Width (pixels) of outlines; 0: none.
     width: u32,
-    spare: u32,
+    // Opacity of outlines around whole things.
+    opacity: f32,
     // sRGB, not linear: these colors are mixed with the screen's bytes.
     selected: vec4<f32>,
     hovered: vec4<f32>,
@@ -63,7 +64,8 @@ fn show(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     // Whole neurons have a free pixel between them and their outline, parts of them have none.
     let around = (bits.z & ~bits.y & 3u) | (bits.y & ~bits.x & 6u);
     if (around & 5u) != 0u {
-        color = vec4(mix(color.rgb, present.selected.rgb, present.selected.a), 1.0);
+        let opacity = select(present.opacity, present.selected.a, (around & 4u) != 0u);
+        color = vec4(mix(color.rgb, present.selected.rgb, opacity), 1.0);
     }
     if (around & 2u) != 0u {
         color = vec4(mix(color.rgb, present.hovered.rgb, present.hovered.a), 1.0);

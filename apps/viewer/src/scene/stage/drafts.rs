@@ -11,7 +11,7 @@ use neurotess::render::{
 };
 
 use super::cost_model::explorable;
-use super::pointing::OUTLINES;
+use super::pointing::outlines;
 use super::rest::REST;
 use super::static_mode::StaticKey;
 use super::{PictureInputs, RestPhase, Stage};
@@ -139,12 +139,12 @@ impl Stage {
         self.resolver = None;
         self.counts = None;
         let any = !state.document.neurons.selected().is_empty();
-        let outlines = Outlines {
+        let around = Outlines {
             // No outlines if there is nothing to outline, since searching for them takes time.
             width: u32::from(any),
-            ..OUTLINES
+            ..outlines(&inputs.params, state.shown())
         };
-        self.progressive.set_outlines(&self.gpu, outlines, None);
+        self.progressive.set_outlines(&self.gpu, around, None);
         self.mask = None;
         self.draw_draft(&inputs)?;
         self.drawn = Some(inputs);

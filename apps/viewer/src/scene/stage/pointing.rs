@@ -5,7 +5,7 @@ use std::time::Duration;
 use eframe::egui;
 use neurotess::render::outline::Outlines;
 use neurotess::render::pick::{PickHit, PickId, PickResolver, ProxyPickResolver};
-use neurotess::render::{DeviceError, ViewParams};
+use neurotess::render::{DeviceError, Look, ViewParams};
 
 use super::Stage;
 use crate::model::markers::MarkerRef;
@@ -18,10 +18,33 @@ use crate::scene::picks::{CursorHit, HitTarget, Picks, seen};
 pub(crate) const OUTLINES: Outlines = Outlines {
     width: 1,
     selected: content::SELECTION,
+    opacity: 1.0,
     // A color that no palette has for types of neurites: those are blue, red, purple, green and
     // gray.
     hovered: [0, 190, 170],
 };
+
+/// Opacity of outlines around neurons whose neurites are as thin as a pixel: full ones, on both sides of each, would
+/// be all that one sees of their colors.
+const THIN: f32 = 0.35;
+/// Diameter (µm) of a usual neurite.
+const USUAL: f64 = 1.0;
+/// Pixels of its diameter from which outlines are full.
+const WIDE: f64 = 5.0;
+
+/// How outlines look in a view of so many neurons. Those in a crowd are full, since they must be found.
+pub(super) fn outlines(params: &ViewParams, neurons: usize) -> Outlines {
+    let pixel = params.camera.pixel_at_target(f64::from(params.size[1]));
+    let share = ((USUAL / pixel - 1.0) / (WIDE - 1.0)).clamp(0.0, 1.0) as f32;
+    let opacity = match neurons > Look::CROWD {
+        true => 1.0,
+        false => THIN + (1.0 - THIN) * share,
+    };
+    Outlines {
+        opacity,
+        ..OUTLINES
+    }
+}
 
 /// Resolves picking ids of the picture that was drawn.
 pub(super) enum Resolver {
@@ -126,8 +149,11 @@ impl Stage {
             key.markers,
             facts,
         );
-        self.progressive
-            .set_outlines(&self.gpu, OUTLINES, Some((picks.size(), &mask)));
+        self.progressive.set_outlines(
+            &self.gpu,
+            outlines(&key.params, state.shown()),
+            Some((picks.size(), &mask)),
+        );
         self.progressive.show(&self.gpu);
         self.mask = Some(key);
     }
