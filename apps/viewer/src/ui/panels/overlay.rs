@@ -67,25 +67,27 @@ pub(super) fn scale_bar(state: &State, rect: Rect, ui: &Ui) {
     if !width.is_finite() || width > rect.width() {
         return;
     }
-    let end = rect.right_bottom() - vec2(20.0, 22.0);
-    let (painter, ink) = (ui.painter(), ink(state));
-    let start = end - vec2(width, 0.0);
-    let shown = Rect::from_min_max(start - vec2(0.0, 24.0), end).expand(8.0);
-    set_off(state, shown, ui);
-    painter.line_segment([start, end], Stroke::new(3.0, ink));
     let text = match length {
         l if l >= 1000.0 => format!("{} mm", l / 1000.0),
         l if l < 1.0 => format!("{} nm", (l * 1e3).round()),
         l => format!("{l} µm"),
     };
-    let at = start.lerp(end, 0.5) - vec2(0.0, 6.0);
-    painter.text(
-        at,
-        Align2::CENTER_BOTTOM,
-        text,
-        FontId::proportional(13.0),
-        ink,
-    );
+    // Nearer things are larger: a length is true at the depth that the camera turns around.
+    let text = match state.view.orthographic {
+        true => text,
+        false => format!("{text} at the focus"),
+    };
+    let (painter, ink) = (ui.painter(), ink(state));
+    let name = painter.layout_no_wrap(text, FontId::proportional(13.0), ink);
+    let end = rect.right_bottom() - vec2(20.0, 22.0);
+    let start = end - vec2(width, 0.0);
+    // Above the middle, but no farther to the right than the bar.
+    let left = (start.lerp(end, 0.5).x - name.size().x / 2.0).min(end.x - name.size().x);
+    let at = Pos2::new(left, end.y - 6.0 - name.size().y);
+    let shown = Rect::from_min_max(Pos2::new(start.x.min(left), end.y - 24.0), end).expand(8.0);
+    set_off(state, shown, ui);
+    painter.line_segment([start, end], Stroke::new(3.0, ink));
+    painter.galley(at, name, ink);
 }
 
 /// Draws the directions of the axes.
