@@ -402,6 +402,14 @@ mod tests {
                 titles.iter().any(|title| matches_words(title, words)),
                 "{words}"
             );
+            "axon",
+            "white",
+            "ghost",
+            "screenshot",
+            "blender",
+            "dark",
+            "units",
+            "delete",
         }
     }
 

@@ -82,14 +82,15 @@ impl Listed {
     }
 }
 
-const WORDS: [(&str, &str); 11] = [
+const WORDS: [(&str, &str); 19] = [
     (
         "Inspect",
         "sholl barcode strahler tortuosity numbers measures plot attributes crossings copy",
     ),
     (
         "Look",
-        "color colour picker colorblind background light wireframe radius factor thickness line width legend mesh opacity",
+        "color colour picker colorblind background white black light wireframe radius factor thickness line width legend \
+         mesh opacity ghost transparent fade axon dendrite soma type axes scale bar",
     ),
     ("Soma editor", "poisson sphere neurite ring"),
     (
@@ -98,7 +99,8 @@ const WORDS: [(&str, &str); 11] = [
     ),
     (
         "Save mesh, picture or film…",
-        "export record movie video frames ffmpeg png ply stl obj simulation",
+        "export record movie video frames ffmpeg png ply stl obj simulation screenshot image snapshot blender glb gltf msh \
+         gmsh",
     ),
     (
         "Open…",
@@ -118,6 +120,20 @@ const WORDS: [(&str, &str); 11] = [
     ),
     ("Isolate selected", "only this section neurite type"),
     ("Hide selected", "invisible section neurite type"),
+    ("Remove selected from the list", "delete close unload"),
+    ("Remove all dimensions", "delete measures"),
+    ("Remove all meshes", "delete"),
+    ("Remove spines", "delete"),
+    ("Dark theme", "night light appearance"),
+    ("Light theme", "day dark appearance"),
+    (
+        "Add a mesh (brain region, segment, pipette)…",
+        "units scale overlay atlas surface",
+    ),
+    (
+        "Position and rotation of selected (numbers, coordinates, angles)…",
+        "units µm degrees",
+    ),
 ];
 
 /// Saved views that have a key. Menus show those that there are, by their names.
@@ -189,11 +205,15 @@ mod tests {
 
     #[test]
     fn words_are_of_commands_that_there_are() {
-        let menus = listed(&Toggles::default());
-        let titles: Vec<&str> = menus
-            .iter()
-            .flat_map(|(_, items)| items.iter().map(|item| &*item.title))
-            .collect();
+        let dark = Toggles {
+            dark: true,
+            ..Toggles::default()
+        };
+        let menus = [listed(&Toggles::default()), listed(&dark)]
+            .into_iter()
+            .flatten();
+        let menus: Vec<Listed> = menus.flat_map(|(_, items)| items).collect();
+        let titles: Vec<&str> = menus.iter().map(|item| &*item.title).collect();
         for (title, _) in WORDS {
             assert!(titles.contains(&title), "{title}");
         }
