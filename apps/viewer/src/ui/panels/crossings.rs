@@ -22,7 +22,7 @@ const COLOR: Color32 = Color32::from_rgb(214, 39, 119);
 /// A switch, and the list.
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let mut open = state.crossings.open;
-    let switch = ui.checkbox(&mut open, "Crossings").tip(
+    let switch = ui.checkbox(&mut open, "Self-crossings of the surface").tip(
         "Places where the surface crosses itself, as meshes of level 4 have it; click to go there",
     );
     if switch.changed() {

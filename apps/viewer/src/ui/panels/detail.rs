@@ -154,7 +154,7 @@ fn counters(state: &State, ui: &mut Ui) {
         Some(Lowered::Error(times)) => vec![("reduced", format!("{times:.0} times as coarse"))],
     };
     if let Some(picture) = c.static_picture {
-        rows.push(("colors that show", grouped(picture.colors as u64)));
+        rows.push(("distinct colors in view", grouped(picture.colors as u64)));
         if let Some(compartments) = picture.compartments {
             rows.push(("values read per frame", grouped(compartments as u64)));
         }

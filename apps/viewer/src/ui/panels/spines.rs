@@ -55,7 +55,7 @@ pub(super) fn show(state: &mut State, sources: &[SourceId], ui: &mut Ui) {
             dropped = density.drag_stopped() || density.lost_focus();
         }
         let says = "Other sizes, directions and random places";
-        if ui.button("Others").tip(says).clicked() {
+        if ui.button("Shuffle").tip(says).clicked() {
             edit.seed = edit.seed.wrapping_add(1);
         }
     }

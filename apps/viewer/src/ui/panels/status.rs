@@ -96,7 +96,7 @@ fn lowered(state: &State, ui: &mut Ui) {
                     grouped(wanted)
                 )
             }
-            Lowered::Triangles(_) => "reduced: simpler tubes".to_owned(),
+            Lowered::Triangles(_) => "reduced: fewer triangles".to_owned(),
             Lowered::Error(times) => format!("reduced: {times:.0} times as coarse"),
         };
         ui.colored_label(warn, text).on_hover_text(LOWERED);
