@@ -1,6 +1,6 @@
 //! Options of saving meshes, pictures and films.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use neurotess::mesh::Format;
@@ -108,13 +108,14 @@ pub struct SaveForm {
     pub video: bool,
     /// Whether ffmpeg is installed, once that is known.
     pub ffmpeg: Option<bool>,
+    /// The paths that were proposed last: of meshes, a picture, a film.
+    proposed: [String; 3],
 }
 
 impl SaveForm {
     pub(crate) fn new(settings: &Settings) -> Self {
-        let at = |name: &str| settings.folder.join(name).display().to_string();
         Self {
-            mesh_out: at("mesh.ply"),
+            mesh_out: String::new(),
             mesh: MeshOptions {
                 out: PathBuf::new(),
                 format: Format::Ply,
@@ -126,7 +127,7 @@ impl SaveForm {
                 all: true,
                 replace: false,
             },
-            picture_out: at("picture.png"),
+            picture_out: String::new(),
             picture: PictureFile {
                 out: PathBuf::new(),
                 size: settings.picture_size,
@@ -134,12 +135,56 @@ impl SaveForm {
                 transparent: false,
                 replace: false,
             },
-            film_out: at("film.png"),
+            film_out: String::new(),
             frames: 60,
             over_time: true,
             time: [0.0; 2],
             video: false,
             ffmpeg: None,
+            proposed: Default::default(),
         }
+    }
+
+    /// Proposes paths in a folder that are named after what is saved. What was typed stays.
+    pub(crate) fn propose(&mut self, folder: &Path, name: &str) {
+        let at = |name: String| folder.join(name).display().to_string();
+        let proposed = [
+            at(format!("{name}.{}", self.mesh.format.extension())),
+            at(format!("{name}.png")),
+            at(format!("{name}_film.png")),
+        ];
+        let lines = [
+            &mut self.mesh_out,
+            &mut self.picture_out,
+            &mut self.film_out,
+        ];
+        for (line, (before, now)) in lines.into_iter().zip(self.proposed.iter().zip(&proposed)) {
+            if line == before {
+                line.clone_from(now);
+            }
+        }
+        self.proposed = proposed;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_typed_is_not_replaced_by_another_proposal() {
+        let mut form = SaveForm::new(&Settings::default());
+        let folder = Path::new("/data");
+        form.propose(folder, "a");
+        assert_eq!(
+            [&form.mesh_out, &form.picture_out],
+            ["/data/a.ply", "/data/a.png"]
+        );
+        form.picture_out = "/data/figure.png".into();
+        form.mesh.format = Format::Msh2;
+        form.propose(folder, "b");
+        assert_eq!(form.mesh_out, "/data/b.msh");
+        assert_eq!(form.picture_out, "/data/figure.png");
+        assert_eq!(form.film_out, "/data/b_film.png");
     }
 }

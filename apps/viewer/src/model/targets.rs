@@ -30,6 +30,14 @@ pub(crate) fn named(path: &Path, ending: &str, others: impl Fn(&Path) -> bool) -
     }
 }
 
+/// A name without what file systems do not take in names.
+pub(crate) fn file_name(name: &str) -> String {
+    let kept = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    name.chars()
+        .map(|c| if kept(c) { c } else { '_' })
+        .collect()
+}
+
 /// The file of one mesh.
 pub(crate) fn mesh_file(path: &Path, format: Format) -> PathBuf {
     named(path, format.extension(), is_mesh)
@@ -121,6 +129,18 @@ impl State {
         let whole = |path: &Path| fs::canonicalize(path).ok();
         let own = self.session.as_deref();
         own.is_some_and(|own| own == path || whole(own).is_some_and(|own| whole(path) == Some(own)))
+    }
+
+    /// What files are named after by themselves: the one cell that is selected or shown, or all of them.
+    pub(crate) fn usual_name(&self) -> String {
+        let neurons = &self.document.neurons;
+        let one = match neurons.selected() {
+            [one] => neurons.get(*one),
+            _ if neurons.len() == 1 => neurons.get(0),
+            _ => None,
+        };
+        let name = one.map_or("neurons", |neuron| &neuron.name);
+        file_name(name)
     }
 
     /// Number of meshes that are written.

@@ -38,11 +38,17 @@ struct Entry {
 
 impl FilePanel {
     /// A dialog that shows a folder. `session`: the file that the session was last saved to.
-    pub(crate) fn new(purpose: FilePurpose, folder: &Path, session: Option<&Path>) -> Self {
+    /// `name`: what a session is named after that has no file yet.
+    pub(crate) fn new(
+        purpose: FilePurpose,
+        folder: &Path,
+        session: Option<&Path>,
+        name: &str,
+    ) -> Self {
         let typed = match (purpose, session) {
             (FilePurpose::SaveSession, Some(session)) => session.display().to_string(),
             (FilePurpose::SaveSession, None) => {
-                let name = format!("session.{}", session::EXTENSION);
+                let name = format!("{name}.{}", session::EXTENSION);
                 folder.join(name).display().to_string()
             }
             (FilePurpose::SavePalette, _) => folder.join("palette.toml").display().to_string(),

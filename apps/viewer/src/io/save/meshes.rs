@@ -18,7 +18,7 @@ use crate::io::task::Progress;
 use crate::model::document::Detail;
 use crate::model::numbers::grouped;
 use crate::model::save::{MeshLod, MeshOptions};
-use crate::model::targets::{mesh_file, mesh_folder};
+use crate::model::targets::{file_name, mesh_file, mesh_folder};
 use crate::model::view::View;
 
 /// A cell to be written.
@@ -76,17 +76,7 @@ fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>,
     let folder = mesh_folder(&options.out);
     let mut files: Vec<PathBuf> = Vec::new();
     for plan in plans {
-        let stem: String = plan
-            .name
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "-_.".contains(c) {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
+        let stem = file_name(&plan.name);
         let name = |n: usize| match n {
             0 => folder.join(format!("{stem}.{extension}")),
             n => folder.join(format!("{stem}_{n}.{extension}")),

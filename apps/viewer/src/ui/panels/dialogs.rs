@@ -53,7 +53,12 @@ fn files(
         .filter(|panel| panel.is_for(purpose))
         .unwrap_or_else(|| {
             let session = state.session.as_deref();
-            FilePanel::new(purpose, &state.settings.folder, session)
+            FilePanel::new(
+                purpose,
+                &state.settings.folder,
+                session,
+                &state.usual_name(),
+            )
         });
     let mut open = true;
     if let Some(command) = shown.show(ctx, &mut open) {
@@ -397,11 +402,6 @@ mod tests {
             "wireframe",
             "simulation",
             "export",
-        ] {
-            assert!(
-                titles.iter().any(|title| matches_words(title, words)),
-                "{words}"
-            );
             "axon",
             "white",
             "ghost",
@@ -410,6 +410,11 @@ mod tests {
             "dark",
             "units",
             "delete",
+        ] {
+            assert!(
+                titles.iter().any(|title| matches_words(title, words)),
+                "{words}"
+            );
         }
     }
 

@@ -20,6 +20,8 @@ use crate::model::targets::mesh_file;
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
+    let name = state.usual_name();
+    state.save.propose(&state.settings.folder, &name);
     meshes(state, ui);
     ui.add_space(6.0);
     ui.separator();
@@ -151,7 +153,7 @@ fn mesh_lod(lod: &mut MeshLod, ui: &mut Ui) {
                     Some(LodCriterion::Homogeneous(level)) => *level,
                     _ => 0,
                 };
-                field(ui, &mut level, 0..=64, 0, |field| field);
+                field(ui, &mut level, 0..=64, 0, |field| field.suffix(" per edge"));
                 *criterion = (level > 0).then_some(LodCriterion::Homogeneous(level));
             }
             MeshLod::AsShown => {}
