@@ -118,6 +118,12 @@ impl Settings {
         }
         self.recent.truncate(RECENT);
     }
+
+    /// Takes a file that could not be read off the recent list.
+    pub(crate) fn forget_file(&mut self, path: &Path) {
+        let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        self.recent.retain(|known| *known != whole);
+    }
 }
 
 /// Writes settings that are not written yet, when the program is interrupted. From any thread.

@@ -9,7 +9,7 @@ use crate::model::document::{Neuron, SourceId};
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::session::{self, Session};
 use crate::model::sources::{Source, Stale};
-use crate::model::state::{Effect, State};
+use crate::model::state::{Dialog, Effect, State};
 
 /// A loading: what was found, and its cells by file.
 #[derive(Default)]
@@ -130,6 +130,7 @@ impl Viewer {
     pub(super) fn found(&mut self, found: Found) {
         for (file, why) in &found.failures {
             self.state.problem(file.display().to_string(), why);
+            self.state.settings.forget_file(file);
         }
         if let [.., report] = &found.reports[..] {
             self.state.run(Edit::SetReport(Some(report.clone())));
@@ -164,6 +165,7 @@ impl Viewer {
             Ok(source) => source,
             Err((file, why)) => {
                 self.state.problem(file.display().to_string(), why);
+                self.state.settings.forget_file(&file);
                 if let Some(loading) = &mut self.loading {
                     loading.failed += 1;
                 }
@@ -278,6 +280,10 @@ impl Viewer {
             0 => String::new(),
             n => format!(", {n} failed"),
         };
+        if read == 0 && loading.failed > 0 && matches!(self.state.dialog, Dialog::Nothing) {
+            // Nothing else would say why nothing came.
+            self.state.dialog = Dialog::Problems;
+        }
         let neurons = self.state.document.neurons.len();
         self.state.status = format!("{read} read{failed}; {neurons} in the list");
         self.watch();

@@ -10,9 +10,9 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
-use neurotess_viewer::state::State;
+use neurotess_viewer::state::{Dialog, State};
 
-use crate::common::{Window, gpu, run, settle, state, window, with_samples};
+use crate::common::{SMALL, Window, gpu, run, settle, state, window, window_of, with_samples};
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 30 0 1 2\n";
 
@@ -28,6 +28,9 @@ fn failures_are_listed_while_the_rest_shows() {
         &mut window,
         Command::Open(vec![folder.path().to_path_buf(), missing]),
     );
+    let folder = fs::canonicalize(folder.path()).expect("there");
+    assert_eq!(state(&mut window).settings.recent, [folder]);
+    assert!(matches!(state(&mut window).dialog, Dialog::Nothing));
     assert_eq!(state(&mut window).document.neurons.len(), 1);
     assert_eq!(
         state(&mut window).problems.len(),
@@ -37,6 +40,18 @@ fn failures_are_listed_while_the_rest_shows() {
     );
     run(&mut window, Command::ToggleProblems);
     window.get_by_label("What went wrong");
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn it_is_said_at_once_why_nothing_was_read() {
+    let mut window = window_of(SMALL);
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    let bad = folder.path().join("bad.swc");
+    fs::write(&bad, "no tracing\n").expect("written");
+    run(&mut window, Command::Open(vec![bad]));
+    assert!(matches!(state(&mut window).dialog, Dialog::Problems));
+    assert!(state(&mut window).settings.recent.is_empty());
 }
 
 #[neurotess_testing::test(needs(gpu))]
