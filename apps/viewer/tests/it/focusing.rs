@@ -7,7 +7,7 @@ use neurotess_viewer::Command;
 use neurotess_viewer::command::Edit;
 use neurotess_viewer::state::{CellPart, Picked};
 
-use crate::common::{Window, gpu, run, settle, state, with_samples};
+use crate::common::{SMALL, Window, gpu, run, samples_in, settle, state, window_of};
 
 fn distance(window: &mut Window) -> f64 {
     let camera = state(window).view.camera();
@@ -16,7 +16,7 @@ fn distance(window: &mut Window) -> f64 {
 
 #[neurotess_testing::test(needs(gpu))]
 fn focus_and_a_double_click_in_the_tree_go_to_the_part() {
-    let mut window = with_samples(&[Kind::Star]);
+    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
     run(&mut window, Edit::Select(vec![0], false));
     run(&mut window, Command::Focus);
     let whole = distance(&mut window);

@@ -11,7 +11,7 @@ use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, Tab, Toggles, listed};
 use neurotess_viewer::state::Dialog;
 
-use crate::common::{Window, gpu, run, settle, state, with_samples};
+use crate::common::{SMALL, Window, gpu, run, samples_in, settle, state, window_of, with_samples};
 
 /// One frame that brings all of these, and those after it, each of half a second.
 fn slow_frame(window: &mut Window, events: Vec<Event>) {
@@ -110,7 +110,7 @@ fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
     slow_frame(&mut window, events.collect());
     assert_eq!(list.borrow().len(), keys.len(), "{:?}", list.borrow());
     assert!(state(&mut window).panels && state(&mut window).document.grid);
-    assert_eq!(window.ctx.memory(eframe::egui::Memory::focused), None);
+    assert_eq!(window.ctx.memory(egui::Memory::focused), None);
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -215,7 +215,7 @@ fn soma_at(window: &mut Window) -> Pos2 {
 
 #[neurotess_testing::test(needs(gpu))]
 fn all_clicks_that_wait_are_answered_in_one_frame() {
-    let mut window = with_samples(&[Kind::Star]);
+    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
     let soma = soma_at(&mut window);
     let beside = window.get_by_role(Role::Canvas).rect().right_bottom() - Vec2::splat(60.0);
     let clicks = [soma, beside, soma, beside, soma];

@@ -7,11 +7,11 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::{Look, VisibleParts};
 use neurotess_viewer::state::State;
 
-use crate::common::{gpu, run, set_look, settle, state, with_samples};
+use crate::common::{SMALL, gpu, run, samples_in, set_look, settle, state, window_of};
 
 #[neurotess_testing::test(needs(gpu))]
 fn what_falsifies_is_said_and_does_not_survive_into_the_next_cell() {
-    let mut window = with_samples(&[Kind::Star]);
+    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
     set_look(&mut window, |look| {
         look.background = [250, 240, 230];
         look.radius_factor = 100.0;
@@ -37,7 +37,7 @@ fn what_falsifies_is_said_and_does_not_survive_into_the_next_cell() {
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn the_look_is_reset_from_the_picture() {
-    let mut window = with_samples(&[Kind::Star]);
+    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
     set_look(&mut window, |look| look.radius_factor = 3.0);
     window.get_by_label("×").click();
     window.run_steps(3);

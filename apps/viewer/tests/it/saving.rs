@@ -10,7 +10,9 @@ use neurotess_testing::note;
 use neurotess_viewer::Command;
 use neurotess_viewer::save::PictureFile;
 
-use crate::common::{Window, gpu, run, set_look, settle, state, viewer, with_samples};
+use crate::common::{
+    SMALL, Window, gpu, run, samples_in, set_look, settle, state, viewer, window_of, with_samples,
+};
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
@@ -108,7 +110,7 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
 
 #[neurotess_testing::test(needs(gpu))]
 fn saved_pictures_have_the_axes_that_show() {
-    let mut window = with_samples(&[Kind::Star]);
+    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let picture = |window: &mut Window, name: &str| {
         let out = folder.path().join(name);

@@ -10,7 +10,9 @@ use neurotess_viewer::Command;
 use neurotess_viewer::command::Edit;
 use neurotess_viewer::state::Dialog;
 
-use crate::common::{Window, gpu, run, settle, state, viewer, window, with_samples};
+use crate::common::{
+    SMALL, Window, gpu, run, samples_in, settle, state, viewer, window, window_of,
+};
 
 /// What the last frame asked the desktop for.
 fn asked(window: &Window) -> Vec<ViewportCommand> {
@@ -86,7 +88,7 @@ fn a_saved_session_closes_at_once() {
 fn edits_are_kept_and_offered_by_the_next_window() {
     let folder = tempfile::tempdir().expect("a folder");
     let kept = folder.path().join("unsaved-0.neurotess");
-    let mut first = with_samples(&[Kind::Star]);
+    let mut first = samples_in(window_of(SMALL), &[Kind::Star]);
     keeping(&mut first, folder.path(), Duration::ZERO);
     first.step();
     assert!(!kept.exists(), "nothing was edited yet");
@@ -94,7 +96,7 @@ fn edits_are_kept_and_offered_by_the_next_window() {
     assert!(kept.exists());
     // It ends without asking.
     drop(first);
-    let mut next = window();
+    let mut next = window_of(SMALL);
     next.step();
     keeping(&mut next, folder.path(), Duration::ZERO);
     next.run_steps(8);
