@@ -248,7 +248,7 @@ fn window_shaders_are_valid_in_every_language_and_have_our_structs() {
         &module,
         "Present",
         Present,
-        [size, width, spare, selected, hovered]
+        [size, width, opacity, selected, hovered]
     );
 }
 
