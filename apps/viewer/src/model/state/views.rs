@@ -97,6 +97,7 @@ impl State {
             let views = self.document.saved_views.iter().enumerate();
             let views = views.map(|(index, saved)| Listed {
                 title: format!("{} (saved view)", saved.name).into(),
+                words: "",
                 keys: keys.get(index).and_then(|item| item.keys),
                 command: Command::GoSaved(index),
                 begins: index == 0,

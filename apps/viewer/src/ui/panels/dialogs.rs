@@ -266,7 +266,7 @@ fn found(state: &State, text: &str) -> Vec<(&'static str, Listed)> {
     all.into_iter()
         .flat_map(|(menu, items)| items.into_iter().map(move |item| (menu, item)))
         .filter(|(menu, item)| {
-            matches_words(&format!("{menu} {} {}", item.title, item.words()), text)
+            matches_words(&format!("{menu} {} {}", item.title, item.words), text)
         })
         .collect()
 }
@@ -327,7 +327,7 @@ mod tests {
         let titles: Vec<String> = menus
             .iter()
             .flat_map(|(menu, items)| {
-                let title = |item: &Listed| format!("{menu} {} {}", item.title, item.words());
+                let title = |item: &Listed| format!("{menu} {} {}", item.title, item.words);
                 items.iter().map(title).collect::<Vec<_>>()
             })
             .collect();

@@ -25,8 +25,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         item(
             choose(
                 now.lasso,
-                "Select with a lasso (Ctrl + drag, freehand)",
-                "Select with a rectangle (Ctrl + drag, box)",
+                "Select with a lasso (Ctrl + drag) | freehand rectangle box",
+                "Select with a rectangle (Ctrl + drag) | box lasso",
             ),
             Some((PLAIN, Key::L)),
             Command::SetLasso(!now.lasso),
@@ -34,19 +34,19 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.placing,
-                "Move and turn selected (handles, gizmo, translate, rotate)",
-                "Stop moving and turning (handles, gizmo)",
+                "Move and turn selected | handles gizmo translate rotate cell drag",
+                "Stop moving and turning | handles gizmo",
             ),
             Some((PLAIN, Key::P)),
             Command::SetPlacing(!now.placing),
         ),
         item(
-            "Position and rotation of selected (numbers, coordinates, angles)…",
+            "Position and rotation of selected… | numbers coordinates angles units µm degrees",
             None,
             Command::Show(Tab::Inspect),
         ),
         item(
-            "Duplicate selected (copy of a cell)",
+            "Duplicate selected | copy of a cell",
             Some((CTRL, Key::D)),
             Command::Duplicate,
         ),
@@ -56,14 +56,14 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Command::PutBack,
         ),
         first(
-            "Remove selected from the list",
+            "Remove selected from the list | delete close unload",
             Some((PLAIN, Key::Delete)),
             Edit::Remove.into(),
         ),
         first(
             choose(
                 now.measuring,
-                "Measure: distance, path length, diameter, angle (ruler)",
+                "Measure: distance, path length, diameter, angle | ruler",
                 "Stop measuring",
             ),
             Some((PLAIN, Key::M)),
@@ -74,7 +74,11 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             Some((CTRL_SHIFT, Key::C)),
             Command::CopyDimensions(None),
         ),
-        item("Remove all dimensions", None, Edit::ClearDimensions.into()),
+        item(
+            "Remove all dimensions | delete measures",
+            None,
+            Edit::ClearDimensions.into(),
+        ),
         first(
             "Grow spines at random (1 for each µm of dendrites)",
             None,
@@ -86,11 +90,15 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
             grow(SpinePlaces::File),
         ),
         item(
-            "Grow spines at synapses (inputs of a circuit's cell)",
+            "Grow spines at synapses of a circuit's cell | inputs",
             None,
             grow(SpinePlaces::Synapses),
         ),
-        item("Remove spines", None, Edit::GrowSpines(None).into()),
+        item(
+            "Remove spines | delete",
+            None,
+            Edit::GrowSpines(None).into(),
+        ),
         item(
             "Remove all traces of the plot",
             None,

@@ -8,7 +8,7 @@ use crate::model::command::{Command, Edit, FilePurpose, PlotOf, Tab};
 pub(super) fn menu() -> Vec<Listed> {
     vec![
         item(
-            "Open…",
+            "Open… | circuit sonata snudda folder swc asc h5 session import load",
             Some((CTRL, Key::O)),
             Command::AskFiles(FilePurpose::Open),
         ),
@@ -19,21 +19,21 @@ pub(super) fn menu() -> Vec<Listed> {
         ),
         item("Close the report", None, Edit::SetReport(None).into()),
         first(
-            "Open points (a table of markers)…",
+            "Open points… | a table of markers",
             None,
             Command::AskFiles(FilePurpose::Points),
         ),
         item(
-            "Close the points (markers)",
+            "Close the points | markers",
             None,
             Edit::SetPoints(None).into(),
         ),
         first(
-            "Add a mesh (brain region, segment, pipette)…",
+            "Add a mesh… | brain region segment pipette units scale overlay atlas surface",
             None,
             Command::AskFiles(FilePurpose::Meshes),
         ),
-        item("Remove all meshes", None, Edit::ClearMeshes.into()),
+        item("Remove all meshes | delete", None, Edit::ClearMeshes.into()),
         first(
             "Save session…",
             Some((CTRL, Key::S)),
@@ -60,7 +60,8 @@ pub(super) fn menu() -> Vec<Listed> {
             Command::AskFiles(FilePurpose::SavePlot(PlotOf::Traces, "csv")),
         ),
         first(
-            "Save mesh, picture or film…",
+            "Save mesh, picture or film… | export record movie video frames ffmpeg png ply stl obj simulation screenshot image \
+             snapshot blender glb gltf msh gmsh",
             Some((CTRL, Key::E)),
             Command::Show(Tab::Save),
         ),

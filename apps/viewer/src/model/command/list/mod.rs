@@ -18,6 +18,8 @@ use crate::model::document::{SpineEdit, SpinePlaces};
 pub struct Listed {
     /// Its title.
     pub title: Cow<'static, str>,
+    /// Words by which people look for it, beside those of its title.
+    pub words: &'static str,
     /// Its shortcut.
     pub keys: Option<KeyboardShortcut>,
     /// The command.
@@ -47,9 +49,12 @@ pub fn listed(now: &Toggles) -> Vec<(&'static str, Vec<Listed>)> {
     ]
 }
 
+/// A line of a menu. After its title, and a bar, there may be words by which people look for it.
 fn item(title: &'static str, keys: Option<(Modifiers, Key)>, command: Command) -> Listed {
+    let (title, words) = title.split_once(" | ").unwrap_or((title, ""));
     Listed {
         title: title.into(),
+        words,
         keys: keys.map(|(modifiers, key)| KeyboardShortcut::new(modifiers, key)),
         command,
         begins: false,
@@ -73,68 +78,6 @@ fn choose(on: bool, to_on: &'static str, to_off: &'static str) -> &'static str {
 fn grow(places: SpinePlaces) -> Command {
     Edit::GrowSpines(Some(SpineEdit::at(places))).into()
 }
-
-impl Listed {
-    /// Words by which people look for it, beside those of its title.
-    pub fn words(&self) -> &'static str {
-        let found = WORDS.iter().find(|(title, _)| *title == self.title);
-        found.map_or("", |(_, words)| words)
-    }
-}
-
-const WORDS: [(&str, &str); 19] = [
-    (
-        "Inspect",
-        "sholl barcode strahler tortuosity numbers measures plot attributes crossings copy",
-    ),
-    (
-        "Look",
-        "color colour picker colorblind background white black light wireframe radius factor thickness line width legend \
-         mesh opacity ghost transparent fade axon dendrite soma type axes scale bar",
-    ),
-    ("Soma editor", "poisson sphere neurite ring"),
-    (
-        "Level of detail",
-        "quality triangles budget memory static exploration mode",
-    ),
-    (
-        "Save mesh, picture or film…",
-        "export record movie video frames ffmpeg png ply stl obj simulation screenshot image snapshot blender glb gltf msh \
-         gmsh",
-    ),
-    (
-        "Open…",
-        "circuit sonata snudda folder swc asc h5 session import load",
-    ),
-    (
-        "Move and turn selected (handles, gizmo, translate, rotate)",
-        "cell drag",
-    ),
-    (
-        "Select with a lasso (Ctrl + drag, freehand)",
-        "rectangle box",
-    ),
-    (
-        "Orthographic: parallel projection, true scale bar",
-        "perspective",
-    ),
-    ("Isolate selected", "only this section neurite type"),
-    ("Hide selected", "invisible section neurite type"),
-    ("Remove selected from the list", "delete close unload"),
-    ("Remove all dimensions", "delete measures"),
-    ("Remove all meshes", "delete"),
-    ("Remove spines", "delete"),
-    ("Dark theme", "night light appearance"),
-    ("Light theme", "day dark appearance"),
-    (
-        "Add a mesh (brain region, segment, pipette)…",
-        "units scale overlay atlas surface",
-    ),
-    (
-        "Position and rotation of selected (numbers, coordinates, angles)…",
-        "units µm degrees",
-    ),
-];
 
 /// Saved views that have a key. Menus show those that there are, by their names.
 const SAVED_VIEWS: [(&str, Key); 5] = [
@@ -204,18 +147,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_of_commands_that_there_are() {
-        let dark = Toggles {
-            dark: true,
-            ..Toggles::default()
-        };
-        let menus = [listed(&Toggles::default()), listed(&dark)]
-            .into_iter()
-            .flatten();
-        let menus: Vec<Listed> = menus.flat_map(|(_, items)| items).collect();
-        let titles: Vec<&str> = menus.iter().map(|item| &*item.title).collect();
-        for (title, _) in WORDS {
-            assert!(titles.contains(&title), "{title}");
+    fn titles_are_short_and_have_no_words_to_look_for() {
+        for (menu, items) in listed(&Toggles::default()) {
+            for item in items {
+                assert!(item.title.len() <= 56, "{menu}: {}", item.title);
+                assert!(!item.title.contains('|') && !item.words.contains('|'));
+            }
         }
     }
 

@@ -44,15 +44,19 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.orthographic,
-                "Orthographic: parallel projection, true scale bar",
-                "Perspective projection (off: orthographic, parallel, true scale bar)",
+                "Orthographic projection: true scale bar | parallel perspective",
+                "Perspective projection | orthographic parallel true scale bar",
             ),
             Some((PLAIN, Key::O)),
             Command::SetOrthographic(!now.orthographic),
         ),
-        first("Hide selected", Some((PLAIN, Key::H)), Edit::Hide.into()),
+        first(
+            "Hide selected | invisible section neurite type",
+            Some((PLAIN, Key::H)),
+            Edit::Hide.into(),
+        ),
         item(
-            "Isolate selected",
+            "Isolate selected | only this section neurite type",
             Some((PLAIN, Key::I)),
             Edit::Isolate.into(),
         ),
@@ -60,15 +64,15 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.clamped,
-                "Clamp selected: fine while moving (pin)",
-                "Unclamp selected (unpin)",
+                "Clamp selected: fine while moving | pin",
+                "Unclamp selected | unpin",
             ),
             Some((PLAIN, Key::C)),
             Edit::Clamp(!now.clamped).into(),
         ),
-        item("Unclamp all (unpin)", None, Edit::UnclampAll.into()),
+        item("Unclamp all | unpin", None, Edit::UnclampAll.into()),
         first(
-            choose(now.y_down, "y axis down (electron microscopy)", "y axis up"),
+            choose(now.y_down, "y axis down | electron microscopy", "y axis up"),
             Some((PLAIN, Key::Y)),
             Command::SetYDown(!now.y_down),
         ),
@@ -89,8 +93,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.split,
-                "Two views side by side (split)",
-                "One view (unsplit)",
+                "Two views side by side | split",
+                "One view | unsplit",
             ),
             Some((PLAIN, Key::B)),
             Command::SetSplit(!now.split),
@@ -107,8 +111,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.turning,
-                "Turntable: turn the scene slowly (spin)",
-                "Stop the turntable (spin)",
+                "Turntable: turn the scene slowly | spin",
+                "Stop the turntable | spin",
             ),
             Some((PLAIN, Key::R)),
             Command::SetTurning(!now.turning),
@@ -116,8 +120,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.synapses,
-                "Show synapses (contacts, edges; markers)",
-                "Hide synapses (contacts, edges; markers)",
+                "Show synapses | contacts edges markers",
+                "Hide synapses | contacts edges markers",
             ),
             Some((PLAIN, Key::X)),
             Edit::ShowSynapses(!now.synapses).into(),
@@ -125,7 +129,7 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         item(
             choose(
                 now.contacts,
-                "Draw synapses as contact discs (boutons, on the membrane)",
+                "Draw synapses as contact discs on the membrane | boutons",
                 "Draw synapses as spheres, without contact discs",
             ),
             None,
@@ -149,8 +153,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         first(
             choose(
                 now.traces,
-                "Plot values over time (traces, voltage, time course)",
-                "Close the plot of values over time (traces, voltage)",
+                "Plot values over time | traces voltage time course",
+                "Close the plot of values over time | traces voltage",
             ),
             Some((PLAIN, Key::T)),
             Command::ShowTraces(!now.traces),
@@ -158,8 +162,8 @@ pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
         item(
             choose(
                 now.crossings,
-                "List crossings (self-intersections of the surface)",
-                "Close the list of crossings (self-intersections)",
+                "List self-crossings of the surface | intersections",
+                "Close the list of self-crossings | intersections",
             ),
             None,
             Command::ListCrossings(!now.crossings),

@@ -8,23 +8,24 @@ use crate::model::command::{Command, Tab};
 pub(super) fn menu(now: &Toggles) -> Vec<Listed> {
     vec![
         item(
-            "Inspect",
+            "Inspect | sholl barcode strahler tortuosity numbers measures plot attributes crossings copy",
             Some((CTRL_SHIFT, Key::I)),
             Command::Show(Tab::Inspect),
         ),
         item(
-            "Soma editor",
+            "Soma editor | poisson sphere neurite ring",
             Some((CTRL_SHIFT, Key::S)),
             Command::Show(Tab::Soma),
         ),
-        item("Look", Some((CTRL_SHIFT, Key::L)), Command::Show(Tab::Look)),
+        item("Look | color colour picker colorblind background white black light wireframe radius factor thickness line width \
+             legend mesh opacity ghost transparent fade axon dendrite soma type axes scale bar", Some((CTRL_SHIFT, Key::L)), Command::Show(Tab::Look)),
         item(
-            "Level of detail",
+            "Level of detail | quality triangles budget memory static exploration mode",
             Some((CTRL_SHIFT, Key::D)),
             Command::Show(Tab::Detail),
         ),
         first(
-            choose(now.dark, "Dark theme", "Light theme"),
+            choose(now.dark, "Dark theme | night light appearance", "Light theme | day dark appearance"),
             None,
             Command::SetDark(!now.dark),
         ),
