@@ -7,7 +7,7 @@ use neurotess_viewer::Command;
 use neurotess_viewer::command::Edit;
 use neurotess_viewer::state::{CellPart, Picked};
 
-use crate::common::{SMALL, Window, gpu, run, samples_in, settle, state, window_of};
+use crate::common::{Window, gpu, run_undrawn, state, undrawn};
 
 fn distance(window: &mut Window) -> f64 {
     let camera = state(window).view.camera();
@@ -16,18 +16,18 @@ fn distance(window: &mut Window) -> f64 {
 
 #[neurotess_testing::test(needs(gpu))]
 fn focus_and_a_double_click_in_the_tree_go_to_the_part() {
-    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
-    run(&mut window, Edit::Select(vec![0], false));
-    run(&mut window, Command::Focus);
+    let mut window = undrawn(&[Kind::Star]);
+    run_undrawn(&mut window, Edit::Select(vec![0], false));
+    run_undrawn(&mut window, Command::Focus);
     let whole = distance(&mut window);
     let part = |part| Some(Picked { neuron: 0, part });
     state(&mut window).picked = part(CellPart::Soma);
-    run(&mut window, Command::Focus);
+    run_undrawn(&mut window, Command::Focus);
     let soma = distance(&mut window);
     assert!(soma < 0.3 * whole, "{soma} of {whole}");
     // A click on a neurite selects its cell.
     state(&mut window).picked = part(CellPart::Section(0));
-    run(&mut window, Command::Focus);
+    run_undrawn(&mut window, Command::Focus);
     let again = distance(&mut window);
     assert!((again / whole - 1.0).abs() < 1e-9, "{again} {whole}");
     // The line of the tree; the panel on the right has the name, too.
@@ -50,6 +50,6 @@ fn focus_and_a_double_click_in_the_tree_go_to_the_part() {
         window.input_mut().time = Some(time);
         window.step();
     }
-    settle(&mut window);
+    window.run_steps(3);
     assert_eq!(distance(&mut window), soma);
 }

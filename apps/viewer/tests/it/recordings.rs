@@ -15,8 +15,8 @@ use neurotess_viewer::save::{FilmOptions, PictureFile};
 
 use crate::common::circuit::{make_sticks, with_circuit, write_circuit};
 use crate::common::{
-    SMALL, Window, differing, gpu, rest, run, set_look, settle, snapshot, state, viewer, wait,
-    window, window_of,
+    SMALL, Window, differing, gpu, rest, run, run_undrawn, set_look, settle, snapshot, state,
+    viewer, wait, window, window_of,
 };
 
 /// The distinct colors of the picture alone, without its legend, roughly.
@@ -446,11 +446,9 @@ fn look_lists_the_reports_of_a_circuit_before_one_shows() {
         "run": {"tstop": 10.0}, "reports": {"voltage": {"variable_name": "v"}}}"#;
     let file = folder.path().join("simulation_config.json");
     fs::write(file, simulation).expect("written");
-    run(
-        &mut window,
-        Command::Open(vec![folder.path().to_path_buf()]),
-    );
-    run(&mut window, Command::Show(Tab::Look));
+    state(&mut window).run(Command::Open(vec![folder.path().to_path_buf()]));
+    wait(&mut window, |w| state(w).document.neurons.len() == 2);
+    run_undrawn(&mut window, Command::Show(Tab::Look));
     assert!(state(&mut window).document.report.is_none());
     window.get_by_label("report");
 }

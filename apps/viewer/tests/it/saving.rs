@@ -8,11 +8,11 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use neurotess::synth::Kind;
 use neurotess_testing::note;
 use neurotess_viewer::Command;
+use neurotess_viewer::command::Edit;
+use neurotess_viewer::document::Look;
 use neurotess_viewer::save::PictureFile;
 
-use crate::common::{
-    SMALL, Window, gpu, run, samples_in, set_look, settle, state, viewer, window_of, with_samples,
-};
+use crate::common::{Window, gpu, run, run_undrawn, settle, state, undrawn, viewer, with_samples};
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
@@ -108,9 +108,9 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn saved_pictures_have_the_axes_that_show() {
-    let mut window = samples_in(window_of(SMALL), &[Kind::Star]);
+    let mut window = undrawn(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let picture = |window: &mut Window, name: &str| {
         let out = folder.path().join(name);
@@ -121,11 +121,16 @@ fn saved_pictures_have_the_axes_that_show() {
             transparent: false,
             replace: false,
         };
-        run(window, Command::SavePicture(options));
+        state(window).run(Command::SavePicture(options));
+        wait(window, "the picture", |_| out.exists());
         fs::read(out).expect("saved")
     };
     let with = picture(&mut window, "with.png");
     assert_eq!(picture(&mut window, "same.png"), with);
-    set_look(&mut window, |look| look.axes = false);
+    let look = Look {
+        axes: false,
+        ..Look::default()
+    };
+    run_undrawn(&mut window, Edit::SetLook(Box::new(look)));
     assert_ne!(picture(&mut window, "without.png"), with);
 }

@@ -11,7 +11,7 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::state::Dialog;
 
 use crate::common::{
-    SMALL, Window, gpu, run, samples_in, settle, state, viewer, window, window_of,
+    SMALL, Window, gpu, run, run_undrawn, state, undrawn, viewer, wait, window, window_of,
 };
 
 /// What the last frame asked the desktop for.
@@ -88,11 +88,11 @@ fn a_saved_session_closes_at_once() {
 fn edits_are_kept_and_offered_by_the_next_window() {
     let folder = tempfile::tempdir().expect("a folder");
     let kept = folder.path().join("unsaved-0.neurotess");
-    let mut first = samples_in(window_of(SMALL), &[Kind::Star]);
+    let mut first = undrawn(&[Kind::Star]);
     keeping(&mut first, folder.path(), Duration::ZERO);
     first.step();
     assert!(!kept.exists(), "nothing was edited yet");
-    run(&mut first, Edit::SetGrid(true));
+    run_undrawn(&mut first, Edit::SetGrid(true));
     assert!(kept.exists());
     // It ends without asking.
     drop(first);
@@ -102,8 +102,8 @@ fn edits_are_kept_and_offered_by_the_next_window() {
     next.run_steps(8);
     assert!(matches!(state(&mut next).dialog, Dialog::Recover(_)));
     next.get_by_label("Open it").click();
-    next.run_steps(3);
-    settle(&mut next);
+    wait(&mut next, |w| state(w).document.neurons.len() == 1);
+    next.step();
     assert!(state(&mut next).document.grid && state(&mut next).document.neurons.len() == 1);
     assert!(state(&mut next).session.is_none() && state(&mut next).changes.unsaved());
     // Left by its user, it leaves nothing.

@@ -147,6 +147,24 @@ pub(crate) fn with_samples(kinds: &[Kind]) -> Window {
     samples_in(window(), kinds)
 }
 
+/// Opens samples in a small window, for tests that do not wait for the picture.
+pub(crate) fn undrawn(kinds: &[Kind]) -> Window {
+    let mut window = window_of(SMALL);
+    window.step();
+    for (&kind, number) in kinds.iter().zip(1..) {
+        state(&mut window).run(Command::OpenSample(kind));
+        wait(&mut window, |w| state(w).document.neurons.len() == number);
+    }
+    window.run_steps(2);
+    window
+}
+
+/// Runs a command without waiting for the picture.
+pub(crate) fn run_undrawn(window: &mut Window, command: impl Into<Command>) {
+    state(window).run(command);
+    window.run_steps(3);
+}
+
 /// Opens samples in a window.
 pub(crate) fn samples_in(mut window: Window, kinds: &[Kind]) -> Window {
     window.step();
