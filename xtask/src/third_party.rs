@@ -130,7 +130,9 @@ fn is_license(name: &str) -> bool {
         "notice",
     ];
     let fonts = ["ofl", "ufl"];
-    let named = begins.iter().any(|begin| stem.starts_with(begin)) || fonts.contains(&stem);
+    let named = begins.iter().any(|begin| stem.starts_with(begin))
+        || stem.ends_with("-license")
+        || fonts.contains(&stem);
     named && ["", "txt", "md", "lib", "lesser"].contains(&extension)
 }
 
@@ -157,6 +159,7 @@ mod tests {
             "UNLICENSE",
             "COPYING",
             "OFL.txt",
+            "emoji-icon-font-mit-license.txt",
         ] {
             assert!(is_license(yes), "{yes}");
         }

@@ -136,7 +136,7 @@ impl State {
         let neurons = &self.document.neurons;
         let one = match neurons.selected() {
             [one] => neurons.get(*one),
-            _ if neurons.len() == 1 => neurons.get(0),
+            _ if neurons.len() == 1 => neurons.first(),
             _ => None,
         };
         let name = one.map_or("neurons", |neuron| &neuron.name);
