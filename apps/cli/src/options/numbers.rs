@@ -7,6 +7,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+#[cfg(feature = "render")]
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number >= 0.0 && f64::is_finite(number) => Ok(number),

@@ -28,7 +28,8 @@ pub(crate) fn share(positions: &[Vec3], triangles: &[[u32; 3]], tree: &Tree) -> 
         .forks()
         .filter_map(|fork| of_fork(&facets, tree, fork))
         .collect();
-    shares.iter().sum::<f64>() / shares.len().max(1) as f64
+    // No forks: 0, where the sum of nothing is -0.
+    (0.0 + shares.iter().sum::<f64>()) / shares.len().max(1) as f64
 }
 
 struct Facet {
