@@ -35,6 +35,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-refine", &["neurotess-mesh"]),
     ("neurotess-union", &["neurotess-mesh"]),
     ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
+    (
+        "neurotess-recipe",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-mesh",
+            "neurotess-generate",
+            "neurotess-refine",
+            "neurotess-union",
+            "neurotess-output",
+        ],
+    ),
     ("neurotess-output", &[]),
     ("neurotess-plot", &["neurotess-morphology"]),
     (
@@ -72,6 +84,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-plot",
             "neurotess-cache",
             "neurotess-union",
+            "neurotess-recipe",
         ],
     ),
     ("neurotess-viewer", &["neurotess"]),

@@ -150,6 +150,12 @@ pub struct SomaSample {
     pub parent: Option<u32>,
 }
 
+impl AsRef<Self> for Morphology {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 impl Morphology {
     /// The main soma, if there is one.
     pub fn soma(&self) -> Option<&Soma> {

@@ -67,6 +67,7 @@
 //! | [`coloring`] | what the colors of pictures tell | `render` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
+//! | [`recipe`] | from a tracing to the mesh that a purpose needs: all stages by one value of options | |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
@@ -85,9 +86,16 @@ pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
 pub use neurotess_output as output;
 pub use neurotess_plot as plot;
+pub use neurotess_recipe as recipe;
+pub use neurotess_recipe::{mesh, read};
 pub use neurotess_refine as refine;
 #[cfg(feature = "render")]
 pub use neurotess_render as render;
 #[cfg(feature = "synth")]
 pub use neurotess_synth as synth;
 pub use neurotess_union as union;
+
+/// The code of docs/library.md.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/library.md")]
+struct LibraryPage;

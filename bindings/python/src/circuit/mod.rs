@@ -13,7 +13,8 @@ use neurotess::circuit::{
 };
 use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
-use neurotess_cli::embed::{CellMesh, MeshRecipe};
+use neurotess::recipe::CellMesh;
+use neurotess_cli::embed::MeshRecipe;
 use numpy::PyArray2;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use neurotess::mesh::{self, Format, InUnit, SurfaceMesh, Unit, WriteOptions, measure_surface};
 use neurotess::output::{Output, write_into};
-use neurotess_cli::embed::{MeshRecipe, MeshReport};
+use neurotess::recipe::MeshReport;
+use neurotess_cli::embed::MeshRecipe;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -92,17 +92,17 @@ fn rank(adapter: &Adapter) -> u8 {
 
 /// What an adapter would have to be able to do.
 fn lacks(adapter: &Adapter) -> Vec<&'static str> {
-    let able = adapter.get_downlevel_capabilities().flags;
+    let mut able = adapter.get_downlevel_capabilities().flags;
     let info = adapter.get_info();
     if info.backend == Backend::Gl && is_old_opengl(&info.driver_info) {
-        return vec!["OpenGL 4.3"];
+        able.remove(DownlevelFlags::COMPUTE_SHADERS | DownlevelFlags::VERTEX_STORAGE);
     }
     let missing = NEEDED.iter().filter(|(needed, _)| !able.contains(*needed));
     missing.map(|&(_, called)| called).collect()
 }
 
-/// Whether the version that a driver gives, as in `3.3.0 NVIDIA 580.159.04`, has no shaders that compute. NVIDIA's is
-/// asked for 3.3 by wgpu, gives just that, and yet says that it computes (gfx-rs/wgpu#8676).
+/// Whether the version that a driver gives, as in `3.3.0 NVIDIA 580.159.04`, has no language for shaders that compute.
+/// NVIDIA's is asked for 3.3 by wgpu, gives just that, and yet says that it computes (gfx-rs/wgpu#8676).
 fn is_old_opengl(version: &str) -> bool {
     let mut numbers = version
         .split(|c: char| !c.is_ascii_digit())

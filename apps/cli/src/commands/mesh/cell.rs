@@ -1,25 +1,24 @@
 //! One cell: read, generate, refine and write.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
-use neurotess::generate::Generated;
 use neurotess::mesh::{self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, Watched};
 use neurotess::morphology::Morphology;
+use neurotess::recipe::{
+    CellMesh, CellSurface, CrossingsReport, SeparationReport, SmoothingReport, SurfaceWarning,
+    Warning, Watch, mesh_watched,
+};
 use serde::Serialize;
 
 use super::files::{Files, PartReport, Target, broken};
-use super::meshed::Meshed;
 use super::observed::Observed;
 use super::options::MeshOptions;
-use super::smoothing::SmoothingReport;
-use super::surface::{CellSurface, CrossingsReport, SeparationReport};
 use super::warning::CellWarning;
-use super::{size, table, verdict};
+use super::{size, table};
 use crate::io::claims::Claimed;
 use crate::io::morphologies::read_morphology;
 use crate::io::output::{OutputError, begin};
@@ -91,7 +90,7 @@ pub(crate) struct Seconds {
 /// A cell read and generated, to be written once or several times.
 pub(crate) struct Prepared {
     file: String,
-    meshed: Meshed,
+    meshed: CellMesh,
     read: Vec<formats::Warning>,
     seconds: Seconds,
     /// The tracing, if a table is to tell where on it triangles are.
@@ -102,9 +101,19 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     /// The surface that is written.
-    pub(super) fn surface(&self, options: &MeshOptions) -> CellSurface<'_> {
-        self.meshed.surface(options)
+    pub(super) fn surface(&self) -> PlannedSurface<'_> {
+        let clock = Instant::now();
+        PlannedSurface {
+            surface: self.meshed.surface(),
+            seconds: clock.elapsed().as_secs_f64(),
+        }
     }
+}
+
+/// A surface, and how long it took to plan it.
+pub(super) struct PlannedSurface<'m> {
+    pub(super) surface: CellSurface<'m>,
+    seconds: f64,
 }
 
 /// A cell in temporary files.
@@ -127,13 +136,13 @@ pub(super) fn mesh(
     let table = path.map(|path| begin(path, options.force)).transpose();
     let table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
-    let surface = prepared.surface(options);
+    let surface = prepared.surface();
     let to = Target::new(job, claimed);
     let mut made = finish(&prepared, &surface, options, to, None, watchers)?;
     if let (Some(path), Some(mut table)) = (path, table)
         && let Some(morphology) = &prepared.morphology
     {
-        table::write(surface.surface(), morphology, table.file())
+        table::write(surface.surface.surface(), morphology, table.file())
             .map_err(|e| failed(broken(path, e)))?;
         made.files.add(table);
     }
@@ -162,8 +171,9 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
 
     let clock = Instant::now();
     let tick = || clock.elapsed().as_secs_f64();
-    let meshed = Meshed::new(&read.morphology, options, tick, &AtomicBool::new(false))
-        .map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
+    let watch = Watch::default().with_clock(&tick);
+    let meshed = mesh_watched(&read.morphology, &options.recipe, &watch)
+        .map_err(|e| Failure(format!("{file}: {}", Failure::from(e).0)))?;
     seconds.soma = meshed.generated.soma_seconds;
     let merging = meshed.merging_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma - merging).max(0.0);
@@ -180,16 +190,16 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
 /// Writes a cell's surface, perhaps at a placement.
 pub(super) fn finish(
     prepared: &Prepared,
-    cell_surface: &CellSurface<'_>,
+    planned: &PlannedSurface<'_>,
     options: &MeshOptions,
     to: Target<'_>,
     world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
 ) -> Result<Made, Failure> {
     let Prepared { file, meshed, .. } = prepared;
-    let generated = &meshed.generated;
     let mut seconds = prepared.seconds;
-    seconds.refine = meshed.merging_seconds + cell_surface.seconds;
+    seconds.refine = meshed.merging_seconds + planned.seconds;
+    let cell_surface = &planned.surface;
     let failed = |Failure(what)| Failure(format!("{file}: {what}"));
     let out = to.out();
     let watched = Watched::new(cell_surface.surface());
@@ -217,11 +227,16 @@ pub(super) fn finish(
     );
     let written = written.map_err(failed)?;
     let clock = Instant::now();
-    let topology = &cell_surface.topology;
+    let mesh = meshed.report_of(cell_surface);
     let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
     let measured = options.measure.then(|| cell_surface.volume_and_area());
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
+    let of_file = prepared.read.iter().cloned().map(Warning::File);
+    let of_walls = walled
+        .iter()
+        .filter_map(SurfaceWarning::of_walls)
+        .map(Warning::Surface);
     let cell = CellReport {
         file: file.clone(),
         out: out.display().to_string(),
@@ -233,32 +248,27 @@ pub(super) fn finish(
         vertices: written.vertices,
         triangles: written.triangles,
         quads: written.quads,
-        closed: topology.closed,
-        euler: topology.euler,
-        components: topology.components,
+        closed: mesh.closed,
+        euler: mesh.euler,
+        components: mesh.components,
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
-        soma_volume: growth * soma_volume(generated),
-        smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
-        crossings: cell_surface.merged().map(CrossingsReport::new),
-        separation: generated.separation.as_ref().map(SeparationReport::from),
-        quality: cell_surface.merged().and_then(|merged| merged.quality),
+        soma_volume: growth * mesh.soma_volume,
+        smoothing: mesh.smoothing,
+        crossings: mesh.crossings,
+        separation: mesh.separation,
+        quality: mesh.quality,
         seconds,
-        warnings: warnings(&prepared.read, meshed, cell_surface)
-            .into_iter()
-            .chain(walled.iter().filter_map(verdict::of_walls))
+        warnings: of_file
+            .chain(mesh.warnings)
+            .chain(of_walls)
+            .map(|w| CellWarning::from(&w))
             .collect(),
     };
     Ok(Made {
         report: cell,
         files: written.files,
     })
-}
-
-/// Volume (µm³) of all somata.
-pub(super) fn soma_volume(generated: &Generated) -> f64 {
-    // Adding 0 turns −0, the sum of no somata, into 0.
-    generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0
 }
 
 /// What was written into files.
@@ -303,29 +313,4 @@ fn write(
         triangles: surface.triangle_count(),
         quads: surface.quad_count(),
     })
-}
-
-/// All warnings of a cell: of its file, of its mesh and of its surface.
-pub(super) fn warnings(
-    read: &[formats::Warning],
-    meshed: &Meshed,
-    surface: &CellSurface<'_>,
-) -> Vec<CellWarning> {
-    let of_file = read.iter().map(|w| CellWarning {
-        line: w.line,
-        sample: None,
-        code: w.code,
-        message: w.message.clone(),
-        count: w.count,
-    });
-    let of_mesh = meshed.generated.warnings.iter().map(|w| CellWarning {
-        line: None,
-        sample: w.sample,
-        code: w.code,
-        message: w.to_string(),
-        count: w.count as u64,
-    });
-    let of_surface = surface.merged().into_iter().flat_map(verdict::warnings);
-    let of_surface = of_surface.chain(verdict::of_thinning(&meshed.thinned));
-    of_file.chain(of_mesh).chain(of_surface).collect()
 }

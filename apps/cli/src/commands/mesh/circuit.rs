@@ -155,7 +155,7 @@ fn mesh_all(
             let entry = run.cell(&instance_job.job, record, |claimed| match &prepared {
                 Ok(prepared) => {
                     let placed = instance_job.instance.world_from_cell(prepared.soma_center);
-                    let surface = prepared.surface(options);
+                    let surface = prepared.surface();
                     let to = Target::new(&instance_job.job, claimed);
                     let written =
                         cell::finish(prepared, &surface, options, to, Some(placed), watchers);

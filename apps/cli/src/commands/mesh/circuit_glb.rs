@@ -9,9 +9,8 @@ use neurotess::mesh::{Format, GlbNode, Surface, WriteError, WriteOptions, write_
 use serde::Serialize;
 
 use super::args::MeshArgs;
-use super::cell::{self, Prepared};
+use super::cell::{self, PlannedSurface, Prepared};
 use super::options::MeshOptions;
-use super::surface::CellSurface;
 use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
@@ -70,11 +69,11 @@ pub(super) fn run(
     if shown.is_empty() {
         anyhow::bail!("{}: no cell to write: choose others", circuit.file);
     }
-    let surfaces: Vec<CellSurface<'_>> = prepared
-        .values()
-        .map(|prepared| prepared.surface(&options))
+    let surfaces: Vec<PlannedSurface<'_>> = prepared.values().map(Prepared::surface).collect();
+    let surfaces: Vec<&dyn Surface> = surfaces
+        .iter()
+        .map(|planned| planned.surface.surface())
         .collect();
-    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(CellSurface::surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
     let nodes: Vec<GlbNode> = shown
         .iter()

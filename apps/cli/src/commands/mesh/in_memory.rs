@@ -3,17 +3,12 @@
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use neurotess::mesh::{Quality, Surface, Watched};
+use neurotess::mesh::{Surface, Watched};
 use neurotess::morphology::Morphology;
-use serde::Serialize;
+use neurotess::recipe::{CellMesh, MeshReport, Watch, mesh_watched};
 
 use super::args::MeshArgs;
-use super::cell::{soma_volume, warnings};
-use super::meshed::Meshed;
 use super::options::MeshOptions;
-use super::smoothing::SmoothingReport;
-use super::surface::{CrossingsReport, SeparationReport};
-use super::warning::CellWarning;
 use crate::io::inputs::Inputs;
 use crate::report::Failure;
 
@@ -28,26 +23,6 @@ struct Options {
 #[derive(Clone, Debug)]
 pub struct MeshRecipe {
     options: MeshOptions,
-}
-
-/// A meshed cell, of which a surface can be had.
-pub struct CellMesh {
-    meshed: Meshed,
-}
-
-/// What is known of a surface, under the names that `neurotess mesh --json` has.
-#[derive(Clone, Debug, Serialize)]
-pub struct MeshReport {
-    closed: bool,
-    euler: i64,
-    components: usize,
-    /// µm³.
-    soma_volume: f64,
-    smoothing: Option<SmoothingReport>,
-    crossings: Option<CrossingsReport>,
-    separation: Option<SeparationReport>,
-    quality: Option<Quality>,
-    warnings: Vec<CellWarning>,
 }
 
 impl MeshRecipe {
@@ -72,9 +47,12 @@ impl MeshRecipe {
     /// If it cannot be meshed, the options leave nothing of it, what crosses cannot be merged, solvers could not
     /// take what was asked for as a simulation mesh, or it was stopped.
     pub fn mesh(&self, morphology: &Morphology, stopped: &AtomicBool) -> Result<CellMesh, String> {
-        let meshed = Meshed::new(morphology, &self.options, || 0.0, stopped);
-        let meshed = meshed.map_err(|Failure(what)| what)?;
-        Ok(CellMesh { meshed })
+        let meshed = mesh_watched(
+            morphology,
+            &self.options.recipe,
+            &Watch::stopped_by(stopped),
+        );
+        meshed.map_err(|e| Failure::from(e).0)
     }
 
     /// The surface of a cell that was meshed by this recipe, and what is known of it.
@@ -83,22 +61,11 @@ impl MeshRecipe {
     /// It is no surface around its tracing, which is a fault of ours.
     pub fn surface<T>(
         &self,
-        CellMesh { meshed }: &CellMesh,
+        meshed: &CellMesh,
         take: impl FnOnce(&dyn Surface) -> T,
     ) -> Result<(T, MeshReport), String> {
-        let surface = meshed.surface(&self.options);
-        let (generated, merged) = (&meshed.generated, surface.merged());
-        let report = MeshReport {
-            closed: surface.topology.closed,
-            euler: surface.topology.euler,
-            components: surface.topology.components,
-            soma_volume: soma_volume(generated),
-            smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
-            crossings: merged.map(CrossingsReport::new),
-            separation: generated.separation.as_ref().map(SeparationReport::from),
-            quality: merged.and_then(|merged| merged.quality),
-            warnings: warnings(&[], meshed, &surface),
-        };
+        let surface = meshed.surface();
+        let report = meshed.report_of(&surface);
         let watched = Watched::new(surface.surface());
         let taken = take(&watched);
         watched.check().map_err(|e| e.to_string())?;
@@ -110,6 +77,7 @@ impl MeshRecipe {
 mod tests {
     use neurotess::formats::{ReadOptions, swc};
     use neurotess::mesh::{SurfaceMesh, measure_surface};
+    use neurotess::recipe::MeshOptions;
 
     use super::*;
 
@@ -134,6 +102,14 @@ mod tests {
         assert_eq!(triangles(&[]), triangles(&["--level=4"]));
         assert!(triangles(&["--level=8"]) > triangles(&[]));
         assert!(triangles(&["--level=2", "--quads"]) < triangles(&["--level=2"]) / 2);
+    }
+
+    #[test]
+    fn the_library_has_the_same_defaults() {
+        let of = |options: &[&str]| recipe(options).expect("options").options.recipe;
+        assert_eq!(of(&[]), MeshOptions::default());
+        assert_eq!(of(&["--level=0"]), MeshOptions::default().with_level(0));
+        assert_eq!(of(&["--simulation"]), MeshOptions::simulation());
     }
 
     #[test]

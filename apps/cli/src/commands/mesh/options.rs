@@ -2,8 +2,9 @@
 
 use std::path::{self, PathBuf};
 
-use neurotess::generate::{Crossings, GenerateOptions, Sides, SphereKind};
+use neurotess::generate::{GenerateOptions, Sides, SphereKind};
 use neurotess::mesh::{Format, Unit};
+use neurotess::recipe::{self, Crossings, Levels, Purpose};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
@@ -12,32 +13,11 @@ use crate::io::output::is_standard;
 use crate::io::targets::{self, Job};
 use crate::report::usage;
 
-/// How many times the local radius edges along neurites of a mesh for simulators may be long: a third to a half as
-/// many triangles as with 1, and still none narrower than 15° but for a few.
-const SIMULATION_ASPECT: f64 = 3.0;
-
-/// Levels of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum MeshLevels {
-    /// The coarse quads themselves.
-    Coarse,
-    /// By a criterion.
-    Criterion(LodCriterion),
-    /// By kinds of edges.
-    Edges(EdgeRule),
-}
-
-/// All that a cell's mesh depends on.
+/// All that a cell's mesh and its files depend on.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshOptions {
     pub(crate) strict: bool,
-    pub(crate) generate: GenerateOptions,
-    pub(crate) levels: MeshLevels,
-    /// Whether the surface is merged with itself where it crosses.
-    pub(crate) merge: bool,
-    /// Whether the mesh must be one that solvers take.
-    pub(crate) simulation: bool,
-    pub(crate) refine: RefineOptions,
+    pub(crate) recipe: recipe::MeshOptions,
     pub(crate) format: Format,
     pub(crate) unit: Unit,
     /// Whether walls part the soma from neurites.
@@ -58,11 +38,7 @@ impl MeshOptions {
     /// so the same options must always give the same text.
     pub(crate) fn fingerprint(&self) -> String {
         let Self {
-            generate,
-            levels,
-            merge,
-            simulation,
-            refine,
+            recipe,
             format,
             unit,
             walls,
@@ -73,11 +49,12 @@ impl MeshOptions {
             force: _,
             measure: _,
         } = self;
-        let lod = match levels {
-            MeshLevels::Coarse => "Coarse".to_owned(),
-            MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
-            MeshLevels::Criterion(other) => format!("{other:?}"),
-            MeshLevels::Edges(rule) => format!("{rule:?}"),
+        let (generate, refine) = (recipe.generate_options(), &recipe.refine);
+        let lod = match recipe.levels {
+            Levels::Coarse => "Coarse".to_owned(),
+            Levels::Criterion(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
+            Levels::Criterion(other) => format!("{other:?}"),
+            Levels::Edges(rule) => format!("{rule:?}"),
         };
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}");
@@ -91,8 +68,12 @@ impl MeshOptions {
             Unit::Micrometer => "",
             Unit::Meter => " Meter",
         };
-        let merged = if *merge { " merged" } else { "" };
-        let simulation = if *simulation { " simulation" } else { "" };
+        let merged = if recipe.merges() { " merged" } else { "" };
+        let simulation = if recipe.is_simulation() {
+            " simulation"
+        } else {
+            ""
+        };
         let walls = if *walls { " walls" } else { "" };
         let materials = match (format, materials) {
             (Format::Obj, true) => " materials",
@@ -134,7 +115,7 @@ impl MeshOptions {
                 "{format} cannot tell walls from the membrane: leave out --walls, or write msh, msh2, poly or smesh"
             ));
         }
-        if args.table.is_some() && levels(args)? == MeshLevels::Coarse && format.has_quads() {
+        if args.table.is_some() && levels(args)? == Levels::Coarse && format.has_quads() {
             return usage(format!(
                 "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
             ));
@@ -143,36 +124,41 @@ impl MeshOptions {
         if args.parts && is_standard(&args.out.out) {
             return usage("--parts writes several files: give a name for them, as in -o cell.ply");
         }
-        let has_quads = args.quads || levels == MeshLevels::Coarse && format.has_quads();
+        let has_quads = args.quads || levels == Levels::Coarse && format.has_quads();
         if args.walls && has_quads {
             return usage(
                 "walls are made of triangles: leave out --walls, or --quads and --level 0",
             );
         }
+        let mut recipe = recipe::MeshOptions::default();
+        recipe.generate = GenerateOptions {
+            equal_area: equal_area(args, levels)?,
+            ..generate_options(args)?
+        };
+        recipe.levels = levels;
+        recipe.coarse_quads = format.has_quads();
+        recipe.crossings = match crossings {
+            CrossingsArg::Keep => Crossings::Keep,
+            CrossingsArg::Separate => Crossings::Separate,
+            CrossingsArg::Merge => Crossings::Merge,
+        };
+        if args.simulation {
+            recipe.purpose = Purpose::Simulation;
+        }
+        recipe.refine = RefineOptions {
+            path: match args.path {
+                PathArg::Hermite => Path::Hermite,
+                PathArg::Linear => Path::Linear,
+            },
+            caps: match args.caps {
+                CapsArg::Round => Caps::Round,
+                CapsArg::Flat => Caps::Flat,
+            },
+            quads: args.quads,
+        };
         Ok(Self {
             strict: args.strict,
-            generate: GenerateOptions {
-                equal_area: equal_area(args, levels)?,
-                crossings: match crossings {
-                    CrossingsArg::Separate => Crossings::Separate,
-                    CrossingsArg::Keep | CrossingsArg::Merge => Crossings::Keep,
-                },
-                ..generate(args)?
-            },
-            levels,
-            merge: crossings != CrossingsArg::Keep,
-            simulation: args.simulation,
-            refine: RefineOptions {
-                path: match args.path {
-                    PathArg::Hermite => Path::Hermite,
-                    PathArg::Linear => Path::Linear,
-                },
-                caps: match args.caps {
-                    CapsArg::Round => Caps::Round,
-                    CapsArg::Flat => Caps::Flat,
-                },
-                quads: args.quads,
-            },
+            recipe,
             format,
             unit: args.unit.unit(),
             walls: args.walls,
@@ -216,7 +202,7 @@ fn crossings(args: &MeshArgs) -> CrossingsArg {
 }
 
 /// Sides of the polygons around neurites, whose area is to be that of the traced circles.
-fn equal_area(args: &MeshArgs, levels: MeshLevels) -> anyhow::Result<Option<Sides>> {
+fn equal_area(args: &MeshArgs, levels: Levels) -> anyhow::Result<Option<Sides>> {
     let usual = if args.simulation {
         RadiiArg::EqualArea
     } else {
@@ -225,27 +211,16 @@ fn equal_area(args: &MeshArgs, levels: MeshLevels) -> anyhow::Result<Option<Side
     if args.radii.unwrap_or(usual) == RadiiArg::Traced {
         return Ok(None);
     }
-    Ok(Some(match levels {
-        MeshLevels::Coarse => Sides::Level(1),
-        MeshLevels::Criterion(LodCriterion::Homogeneous(level)) => Sides::Level(level),
-        MeshLevels::Criterion(_) => {
-            return usage(
-                "--radii equal-area must know how many sides neurites get: use --level or --isotropic instead of \
-                 --max-error",
-            );
-        }
-        MeshLevels::Edges(EdgeRule::Levels { around, .. }) => Sides::Level(around),
-        MeshLevels::Edges(EdgeRule::Lengths {
-            radii, least, most, ..
-        }) => Sides::ByLength {
-            radii: f64::from(radii),
-            least: f64::from(least),
-            most: f64::from(most),
-        },
-    }))
+    match recipe::MeshOptions::sides(levels) {
+        Some(sides) => Ok(Some(sides)),
+        None => usage(
+            "--radii equal-area must know how many sides neurites get: use --level or --isotropic instead of \
+             --max-error",
+        ),
+    }
 }
 
-fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
+fn levels(args: &MeshArgs) -> anyhow::Result<Levels> {
     let isotropic = args.isotropic.or(args.simulation.then_some(1.0));
     let Some(radii) = isotropic else {
         if args
@@ -257,11 +232,11 @@ fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
             return usage("--max-edge, --min-edge and --max-aspect are for --isotropic: add it");
         }
         return Ok(match (args.max_error, args.level, args.level_along) {
-            (Some(error), ..) => MeshLevels::Criterion(LodCriterion::MaxError(error as f32)),
+            (Some(error), ..) => Levels::Criterion(LodCriterion::MaxError(error as f32)),
             (None, 0, Some(_)) => return usage("--level-along needs a --level of 1 or more"),
-            (None, 0, None) => MeshLevels::Coarse,
-            (None, around, Some(along)) => MeshLevels::Edges(EdgeRule::Levels { around, along }),
-            (None, level, None) => MeshLevels::Criterion(LodCriterion::Homogeneous(level)),
+            (None, 0, None) => Levels::Coarse,
+            (None, around, Some(along)) => Levels::Edges(EdgeRule::Levels { around, along }),
+            (None, level, None) => Levels::Criterion(LodCriterion::Homogeneous(level)),
         });
     };
     let (least, most) = (
@@ -271,13 +246,13 @@ fn levels(args: &MeshArgs) -> anyhow::Result<MeshLevels> {
     if least > most {
         return usage("--min-edge is longer than --max-edge");
     }
-    Ok(MeshLevels::Edges(EdgeRule::Lengths {
+    Ok(Levels::Edges(EdgeRule::Lengths {
         radii: radii as f32,
-        aspect: args.max_aspect.unwrap_or(if args.simulation {
-            SIMULATION_ASPECT
-        } else {
-            1.0
-        }) as f32,
+        aspect: match args.max_aspect {
+            Some(aspect) => aspect as f32,
+            None if args.simulation => recipe::SIMULATION_ASPECT,
+            None => 1.0,
+        },
         least: least as f32,
         most: most as f32,
     }))
@@ -313,7 +288,7 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     }
 }
 
-fn generate(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
+fn generate_options(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
     let sphere = match args.soma_sphere {
         Some(SphereArg::Octahedron) => SphereKind::Octahedron,
         Some(SphereArg::Cube) => SphereKind::Cube,
@@ -361,11 +336,7 @@ mod tests {
     fn fingerprints_stay_for_ever() {
         let mut options = MeshOptions {
             strict: false,
-            generate: GenerateOptions::default(),
-            levels: MeshLevels::Criterion(LodCriterion::Homogeneous(4)),
-            merge: false,
-            simulation: false,
-            refine: RefineOptions::default(),
+            recipe: recipe::MeshOptions::default(),
             format: Format::Ply,
             unit: Unit::Micrometer,
             walls: false,
@@ -381,30 +352,29 @@ mod tests {
              sphere_level: None, rings: {}, kinds: None } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
         );
-        options.levels = MeshLevels::Coarse;
+        options.recipe.levels = Levels::Coarse;
         options.format = Format::Glb;
-        options.materials = true;
-        options.generate.rings = BTreeMap::from([(1, 0.5)]);
-        options.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
+        options.recipe.generate.rings = BTreeMap::from([(1, 0.5)]);
+        options.recipe.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
         assert_eq!(
             options.fingerprint(),
             "Coarse GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, radius_factor: 1.0, sphere: Cube, \
              sphere_level: None, rings: {1: 0.5}, kinds: Some([NeuriteKind(2)]) } \
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );
-        options.levels = MeshLevels::Criterion(LodCriterion::MaxError(0.05));
+        options.recipe.levels = Levels::Criterion(LodCriterion::MaxError(0.05));
         options.unit = Unit::Meter;
         let text = options.fingerprint();
         assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
-        options.generate.equal_area = Some(Sides::Level(2));
+        options.recipe.generate.equal_area = Some(Sides::Level(2));
         let text = options.fingerprint();
         assert!(text.contains(", equal_area: Some(Level(2)), "), "{text}");
-        options.generate.smooth = Smooth::Length(2.0);
+        options.recipe.generate.smooth = Smooth::Length(2.0);
         let text = options.fingerprint();
         assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
-        options.generate.unknown_radius = Some(0.4);
-        options.generate.least_radius = 0.1;
+        options.recipe.generate.unknown_radius = Some(0.4);
+        options.recipe.generate.least_radius = 0.1;
         let text = options.fingerprint();
         assert!(
             text.contains(", unknown_radius: Some(0.4), least_radius: 0.1 } "),

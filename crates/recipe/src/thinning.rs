@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use neurotess::morphology::{Attachment, Morphology};
+use neurotess_morphology::{Attachment, Morphology};
 
 /// What is left of a radius after each step.
 const STEP: f64 = 0.7;
@@ -12,7 +12,7 @@ const STEP: f64 = 0.7;
 const AROUND: usize = 2;
 
 /// A tracing whose tubes become thinner.
-pub(super) struct Thinning<'m> {
+pub(crate) struct Thinning<'m> {
     traced: &'m Morphology,
     /// Indices of points by their samples.
     points: BTreeMap<i64, usize>,
@@ -21,7 +21,7 @@ pub(super) struct Thinning<'m> {
 }
 
 impl<'m> Thinning<'m> {
-    pub(super) fn new(traced: &'m Morphology) -> Self {
+    pub(crate) fn new(traced: &'m Morphology) -> Self {
         Self {
             traced,
             points: BTreeMap::new(),
@@ -31,7 +31,7 @@ impl<'m> Thinning<'m> {
 
     /// Makes tubes one step thinner around places, told by the samples that cross there. Tells whether there is
     /// anything to make thinner.
-    pub(super) fn thin(&mut self, places: &[[i32; 2]]) -> bool {
+    pub(crate) fn thin(&mut self, places: &[[i32; 2]]) -> bool {
         if self.points.is_empty() {
             let samples = self.traced.sample_ids.iter();
             self.points = samples.copied().zip(0..).collect();
@@ -46,7 +46,7 @@ impl<'m> Thinning<'m> {
     }
 
     /// The tracing as it is now.
-    pub(super) fn morphology(&self) -> Morphology {
+    pub(crate) fn morphology(&self) -> Morphology {
         let mut thinned = self.traced.clone();
         for (&point, &steps) in &self.steps {
             let radius = &mut thinned.points[point].radius;
@@ -56,7 +56,7 @@ impl<'m> Thinning<'m> {
     }
 
     /// Samples that are thinner than traced.
-    pub(super) fn samples(&self) -> Vec<i64> {
+    pub(crate) fn samples(&self) -> Vec<i64> {
         let points = self.steps.keys();
         points.map(|&point| self.traced.sample_ids[point]).collect()
     }
@@ -82,7 +82,7 @@ impl<'m> Thinning<'m> {
 
 #[cfg(test)]
 mod tests {
-    use neurotess::formats::{ReadOptions, swc};
+    use neurotess_formats::{ReadOptions, swc};
 
     use super::*;
 

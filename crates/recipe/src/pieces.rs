@@ -1,42 +1,9 @@
 //! The pieces of a mesh for simulators, which solvers take for bodies of their own.
 
-use neurotess::mesh::SurfaceMesh;
-
-use super::warning::CellWarning;
-
-/// Most pieces that are named.
-const NAMED: usize = 8;
-
-/// A warning that names each piece by the sample of its first vertex, where there are several.
-pub(super) fn warning(mesh: &SurfaceMesh) -> Option<CellWarning> {
-    let samples = samples(mesh);
-    let (&first, others) = samples
-        .split_first()
-        .filter(|(_, others)| !others.is_empty())?;
-    let count = samples.len();
-    let mut named: Vec<String> = samples
-        .iter()
-        .take(NAMED)
-        .map(ToString::to_string)
-        .collect();
-    if count > NAMED {
-        named.push(format!("{} more", count - NAMED));
-    }
-    Some(CellWarning {
-        line: None,
-        sample: Some(i64::from(first)),
-        code: "several_pieces",
-        message: format!(
-            "the mesh has {count} pieces that nothing connects, at samples {}: solvers take each for a body of its own; \
-             neurotess convert --join connects tracings",
-            named.join(", ")
-        ),
-        count: others.len() as u64 + 1,
-    })
-}
+use neurotess_mesh::SurfaceMesh;
 
 /// The sample of the first vertex of each piece, in their order.
-fn samples(mesh: &SurfaceMesh) -> Vec<i32> {
+pub(crate) fn samples(mesh: &SurfaceMesh) -> Vec<i32> {
     let mut piece: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     let mut is_used = vec![false; piece.len()];
     for corners in &mesh.faces.triangles {
@@ -68,7 +35,7 @@ fn first(piece: &mut [u32], vertex: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use neurotess::mesh::{Faces, SurfaceVertex};
+    use neurotess_mesh::{Faces, SurfaceVertex};
 
     use super::*;
 
@@ -87,9 +54,7 @@ mod tests {
             ..SurfaceMesh::default()
         };
         assert_eq!(samples(&mesh), [7, 4]);
-        let told = warning(&mesh).expect("two pieces");
-        assert!(told.message.contains("2 pieces") && told.message.contains("samples 7, 4"));
         mesh.faces.triangles.push([6, 0, 1]);
-        assert!(warning(&mesh).is_none());
+        assert_eq!(samples(&mesh), [7]);
     }
 }

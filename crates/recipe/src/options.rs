@@ -1,0 +1,201 @@
+//! Options of a cell's mesh.
+
+use neurotess_generate::{GenerateOptions, Sides};
+use neurotess_refine::{EdgeRule, LodCriterion, RefineOptions};
+
+use crate::OptionsError;
+
+/// How many times the local radius edges along neurites of a mesh for simulators may be long: a third to a half as
+/// many triangles as with 1, and still none narrower than 15° but for a few.
+pub const SIMULATION_ASPECT: f32 = 3.0;
+/// Level of a surface to look at.
+const LEVEL: u32 = 4;
+
+/// How finely a surface is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Levels {
+    /// The coarse quads themselves.
+    Coarse,
+    /// By a criterion.
+    Criterion(LodCriterion),
+    /// By kinds of edges.
+    Edges(EdgeRule),
+}
+
+/// What becomes of places where the surface crosses itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Crossings {
+    /// It crosses there.
+    #[default]
+    Keep,
+    /// Branches that were traced through one another are moved apart, and what still crosses is merged.
+    Separate,
+    /// The surface becomes the exact union with itself.
+    Merge,
+}
+
+/// What a mesh is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Purpose {
+    /// Pictures, measures, printing.
+    #[default]
+    Surface,
+    /// Solvers: closed, without crossings, short circuits and narrow triangles, or an error.
+    Simulation,
+}
+
+/// All that a cell's mesh depends on. The command line, Python and the window have the same.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeshOptions {
+    /// Of the coarse mesh. Its `crossings` are not looked at: [`MeshOptions::crossings`] are.
+    pub generate: GenerateOptions,
+    /// Of the surface.
+    pub refine: RefineOptions,
+    /// How finely it is made.
+    pub levels: Levels,
+    /// Whether quads of [`Levels::Coarse`] stay quads; else each becomes two triangles.
+    pub coarse_quads: bool,
+    /// What becomes of places where it crosses itself.
+    pub crossings: Crossings,
+    /// What it is for.
+    pub purpose: Purpose,
+}
+
+impl Default for MeshOptions {
+    /// A surface of level 4, as traced.
+    fn default() -> Self {
+        Self {
+            generate: GenerateOptions::default(),
+            refine: RefineOptions::default(),
+            levels: Levels::Criterion(LodCriterion::Homogeneous(LEVEL)),
+            coarse_quads: true,
+            crossings: Crossings::Keep,
+            purpose: Purpose::Surface,
+        }
+    }
+}
+
+impl MeshOptions {
+    /// A mesh that solvers take: nothing crosses, triangles are of even size, and neurites hold what was traced.
+    pub fn simulation() -> Self {
+        let rule = EdgeRule::Lengths {
+            radii: 1.0,
+            least: 0.0,
+            most: f32::INFINITY,
+            aspect: SIMULATION_ASPECT,
+        };
+        Self {
+            generate: GenerateOptions {
+                equal_area: Self::sides(Levels::Edges(rule)),
+                ..GenerateOptions::default()
+            },
+            levels: Levels::Edges(rule),
+            crossings: Crossings::Separate,
+            purpose: Purpose::Simulation,
+            ..Self::default()
+        }
+    }
+
+    /// The same with a level, 1 to 64: subdivisions of each edge of the coarse mesh; 0: the coarse mesh itself.
+    #[must_use]
+    pub fn with_level(mut self, level: u32) -> Self {
+        self.levels = match level {
+            0 => Levels::Coarse,
+            level => Levels::Criterion(LodCriterion::Homogeneous(level)),
+        };
+        self
+    }
+
+    /// The same within this error (µm) of the smooth surface.
+    #[must_use]
+    pub fn with_max_error(mut self, error: f32) -> Self {
+        self.levels = Levels::Criterion(LodCriterion::MaxError(error));
+        self
+    }
+
+    /// The same with another way with crossings.
+    #[must_use]
+    pub fn with_crossings(mut self, crossings: Crossings) -> Self {
+        self.crossings = crossings;
+        self
+    }
+
+    /// Sides of the polygons around neurites, for radii that make up for them; none where they differ from place to
+    /// place in a way that is not known beforehand.
+    pub fn sides(levels: Levels) -> Option<Sides> {
+        match levels {
+            Levels::Coarse => Some(Sides::Level(1)),
+            Levels::Criterion(LodCriterion::Homogeneous(level)) => Some(Sides::Level(level)),
+            Levels::Criterion(_) => None,
+            Levels::Edges(EdgeRule::Levels { around, .. }) => Some(Sides::Level(around)),
+            Levels::Edges(EdgeRule::Lengths {
+                radii, least, most, ..
+            }) => Some(Sides::ByLength {
+                radii: f64::from(radii),
+                least: f64::from(least),
+                most: f64::from(most),
+            }),
+        }
+    }
+
+    /// Whether the surface is merged with itself where it crosses.
+    pub fn merges(&self) -> bool {
+        self.crossings != Crossings::Keep
+    }
+
+    /// Whether it is for solvers.
+    pub fn is_simulation(&self) -> bool {
+        self.purpose == Purpose::Simulation
+    }
+
+    /// Those of the coarse mesh, with what follows from the crossings.
+    pub fn generate_options(&self) -> GenerateOptions {
+        GenerateOptions {
+            crossings: match self.crossings {
+                Crossings::Separate => neurotess_generate::Crossings::Separate,
+                Crossings::Keep | Crossings::Merge => neurotess_generate::Crossings::Keep,
+            },
+            ..self.generate.clone()
+        }
+    }
+
+    /// Whether they fit together.
+    ///
+    /// # Errors
+    /// Which do not.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        if self.merges() && self.refine.quads {
+            return Err(OptionsError::MergedQuads);
+        }
+        if self.is_simulation() && !self.merges() {
+            return Err(OptionsError::CrossingSimulation);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_together_is_an_error() {
+        assert_eq!(MeshOptions::default().check(), Ok(()));
+        assert_eq!(MeshOptions::simulation().check(), Ok(()));
+        let mut quads = MeshOptions::default().with_crossings(Crossings::Merge);
+        quads.refine.quads = true;
+        assert_eq!(quads.check(), Err(OptionsError::MergedQuads));
+        let crossing = MeshOptions::simulation().with_crossings(Crossings::Keep);
+        assert_eq!(crossing.check(), Err(OptionsError::CrossingSimulation));
+    }
+
+    #[test]
+    fn separating_is_told_to_the_generator() {
+        let crossings = |options: MeshOptions| options.generate_options().crossings;
+        let separate = neurotess_generate::Crossings::Separate;
+        assert_eq!(crossings(MeshOptions::simulation()), separate);
+        let merge = MeshOptions::default().with_crossings(Crossings::Merge);
+        assert_ne!(crossings(merge), separate);
+    }
+}
