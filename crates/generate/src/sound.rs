@@ -10,6 +10,7 @@ use neurotess_mesh::{
 };
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement, patch_points};
 
+use crate::part::Part;
 use crate::skeleton::{NONE, Root, Skeleton};
 
 /// Levels at which a surface is looked at whose tubes turn over: the rings alone, what is between them, and that more finely.
@@ -27,16 +28,23 @@ const LEANING: f32 = 0.3;
 const TAPERED: f32 = 2.0;
 
 /// The file's own numbers of samples on pieces of the surface that are inside out, or where it is far from the tracing: none
-/// of a sound one. Only where a tube turns over is the whole surface looked at, which takes as long as making it.
+/// of a sound one. Only pieces with a tube that turns over are looked at as a whole, and refined only where that tube may
+/// outweigh the others: to refine a cell takes as long as making it.
 pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
     let reach = mesh.around_tracing(MOST_RADII);
     let mut faulty = BTreeSet::new();
-    let mut turns_over = false;
+    // Lateral patches, those that turn over and those that lean.
+    let (mut turned, mut leaning) = (Vec::new(), Vec::new());
     for (patch, &Patch { corners, kind }) in mesh.patches.iter().enumerate() {
         let may_reach_far = match kind {
             PatchKind::Lateral => {
                 let (cosine, taper) = bend(mesh, corners);
-                turns_over |= cosine < 0.0;
+                if cosine < 0.0 {
+                    turned.push(patch);
+                }
+                if cosine < LEANING {
+                    leaning.push(patch);
+                }
                 cosine < LEANING || taper > TAPERED
             }
             PatchKind::Loft => true,
@@ -46,25 +54,75 @@ pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
             faulty.extend(corners.map(|corner| point(mesh, corner).sample.0));
         }
     }
-    for level in LEVELS.into_iter().filter(|_| turns_over) {
-        let lod = LodCriterion::Homogeneous(level);
-        let refined = Refinement::new(mesh, lod, &RefineOptions::default());
-        let surface = SurfaceMesh::collect(&refined);
-        let outside = surface
-            .vertices
-            .iter()
-            .filter(|vertex| !reach.has(vertex.position));
-        faulty.extend(outside.map(|vertex| vertex.point));
-        faulty.extend(inside_out(&surface).map(|vertex| vertex.point));
+    if turned.is_empty() {
+        return faulty;
+    }
+    for piece in doubtful_pieces(mesh, &turned, &leaning) {
+        let part = Part::new(mesh, piece).mesh;
+        for level in LEVELS {
+            let lod = LodCriterion::Homogeneous(level);
+            let refined = Refinement::new(&part, lod, &RefineOptions::default());
+            let surface = SurfaceMesh::collect(&refined);
+            let outside = surface
+                .vertices
+                .iter()
+                .filter(|vertex| !reach.has(vertex.position));
+            faulty.extend(outside.map(|vertex| vertex.point));
+            faulty.extend(inside_out(&surface).map(|vertex| vertex.point));
+        }
     }
     faulty
 }
 
+/// The patches of pieces that have some that turn over, but for pieces with so much more volume than their `leaning` patches
+/// may have that they are right side out at every level.
+fn doubtful_pieces(mesh: &CoarseMesh, turned: &[usize], leaning: &[usize]) -> Vec<Vec<u32>> {
+    let corners = || mesh.patches.iter().map(|patch| patch.corners);
+    let mut pieces = Pieces::new(mesh.vertices.len());
+    for [a, b, c, d] in corners() {
+        pieces.join(a, b);
+        pieces.join(a, c);
+        pieces.join(a, d);
+    }
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let at = |corner: u32| mesh.vertices[corner as usize].position;
+    let radius = |corner: u32| point(mesh, corner).radius;
+    let volumes = volumes(&mut pieces, corners().flat_map(halves), at, radius);
+    let mut unknown = vec![0.0; mesh.vertices.len()];
+    for &patch in leaning {
+        let corners = mesh.patches[patch].corners;
+        let thickest = corners.map(radius).into_iter().fold(0.0, f32::max);
+        let own = around(mesh, corners);
+        let volume = own.low.distance(own.high) * thickest * thickest;
+        unknown[pieces.of(corners[0]) as usize] += f64::from(volume);
+    }
+    let first = |patch: usize| mesh.patches[patch].corners[0];
+    let mut doubtful: Vec<u32> = turned.iter().map(|&p| pieces.of(first(p))).collect();
+    doubtful.sort_unstable();
+    doubtful.dedup();
+    doubtful.retain(|&piece| {
+        let [volume, of_tube] = volumes[piece as usize];
+        volume <= CLEAR_VOLUME * of_tube + MOST_TURNED * unknown[piece as usize]
+    });
+    let mut patches = vec![Vec::new(); doubtful.len()];
+    for (patch, corners) in (0..).zip(corners()) {
+        if let Ok(place) = doubtful.binary_search(&pieces.of(corners[0])) {
+            patches[place].push(patch);
+        }
+    }
+    patches
+}
+
+/// The box around the corners of a patch.
+fn around(mesh: &CoarseMesh, corners: [u32; 4]) -> Extent {
+    corners.iter().fold(Extent::NONE, |own, &corner| {
+        own.with(mesh.vertices[corner as usize].position)
+    })
+}
+
 fn reaches_beyond(mesh: &CoarseMesh, reach: &Extent, patch: usize) -> bool {
     let corners = mesh.patches[patch].corners;
-    let own = corners.iter().fold(Extent::NONE, |own, &corner| {
-        own.with(mesh.vertices[corner as usize].position)
-    });
+    let own = around(mesh, corners);
     // No curve between the corners leaves them by more than they are apart: nearly all patches are far within.
     let apart = Vec3::splat(own.low.distance(own.high));
     if reach.has(own.low - apart) && reach.has(own.high + apart) {
@@ -96,10 +154,16 @@ fn bend(mesh: &CoarseMesh, corners: [u32; 4]) -> (f32, f32) {
 /// Least volume of a piece, as a share of that of tubes with its area and radii: half of one times the other. A tube that
 /// is partly inside out has a part of the volume at one level and less than nothing at the next.
 const LEAST_VOLUME: f64 = 0.1;
+/// A piece whose rings alone have this share of that volume keeps [`LEAST_VOLUME`] between them: a straight tube of four
+/// sides has 0.7.
+const CLEAR_VOLUME: f64 = 0.3;
+/// Most volume that a leaning patch may take from its piece, in times its length and the square of its thicker radius: a
+/// quarter of a tube has 0.8 of that, and one that bends is at most three times as long and inside out all along.
+const MOST_TURNED: f64 = 4.0;
 
 /// The vertices of connected pieces of a closed surface that have hardly any volume, or less than none.
 fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
-    let mut pieces = Pieces((0..surface.vertices.len() as u32).collect());
+    let mut pieces = Pieces::new(surface.vertices.len());
     let faces = &surface.faces;
     let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
     let quads = faces.quads.iter().flat_map(halves);
@@ -108,19 +172,9 @@ fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
         pieces.join(a, b);
         pieces.join(a, c);
     }
-    // By piece: its volume, and that of a tube.
-    let mut volumes = vec![[0.0; 2]; surface.vertices.len()];
-    for corners in triangles {
-        let piece = pieces.of(corners[0]);
-        let at = |corner: u32| surface.vertices[corner as usize].position.as_dvec3();
-        // From a corner of its own piece, so that places far from the origin cost no digits.
-        let [a, b, c] = corners.map(|corner| at(corner) - at(piece));
-        let radius = f64::from(surface.vertices[corners[0] as usize].radius);
-        let area = 0.5 * (b - a).cross(c - a).length();
-        let [volume, of_tube] = &mut volumes[piece as usize];
-        *volume += a.dot(b.cross(c)) / 6.0;
-        *of_tube += 0.5 * area * radius;
-    }
+    let at = |corner: u32| surface.vertices[corner as usize].position;
+    let radius = |corner: u32| surface.vertices[corner as usize].radius;
+    let volumes = volumes(&mut pieces, triangles, at, radius);
     (0..)
         .zip(&surface.vertices)
         .filter_map(move |(index, vertex)| {
@@ -129,10 +183,36 @@ fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
         })
 }
 
+/// By piece: its volume, and that of a tube with its area and radii.
+fn volumes(
+    pieces: &mut Pieces,
+    triangles: impl Iterator<Item = [u32; 3]>,
+    at: impl Fn(u32) -> Vec3,
+    radius: impl Fn(u32) -> f32,
+) -> Vec<[f64; 2]> {
+    let mut volumes = vec![[0.0; 2]; pieces.0.len()];
+    for corners in triangles {
+        let piece = pieces.of(corners[0]);
+        let at = |corner: u32| at(corner).as_dvec3();
+        // From a corner of its own piece, so that places far from the origin cost no digits.
+        let [a, b, c] = corners.map(|corner| at(corner) - at(piece));
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let [volume, of_tube] = &mut volumes[piece as usize];
+        *volume += a.dot(b.cross(c)) / 6.0;
+        *of_tube += 0.5 * area * f64::from(radius(corners[0]));
+    }
+    volumes
+}
+
 /// Which piece each vertex belongs to: the vertex that stands for it, by way of others.
 struct Pieces(Vec<u32>);
 
 impl Pieces {
+    /// Each vertex on its own.
+    fn new(vertices: usize) -> Self {
+        Self((0..vertices as u32).collect())
+    }
+
     fn of(&mut self, vertex: u32) -> u32 {
         let mut vertex = vertex;
         while self.0[vertex as usize] != vertex {
