@@ -63,11 +63,11 @@ pub(crate) fn choose(
     may_join: &MayJoin<'_>,
     stop: Stop<'_>,
 ) {
-    let passed = passed(made, trials);
-    let is_crowd = passed.len() > CROWD && 2 * trials.sound().count() < trials.forks();
-    if passed.is_empty() || is_crowd {
+    let is_mostly_faulty = 2 * trials.sound().count() < trials.forks();
+    let most = if is_mostly_faulty { CROWD } else { usize::MAX };
+    let Some(passed) = passed(made, trials, most).filter(|passed| !passed.is_empty()) else {
         return;
-    }
+    };
     let forks: Vec<u32> = passed.iter().map(|passed| passed.fork).collect();
     let parts = Neighborhood::parts(skeleton, &forks);
     let found = parts.par_iter().map(|near| {
@@ -171,8 +171,8 @@ fn found_in_round(
     found.collect()
 }
 
-/// Sound forks that patches of other branches cross, ascending.
-fn passed(made: &Made, trials: &ForkTrials) -> Vec<Passed> {
+/// Sound forks that patches of other branches cross, ascending; none if there are more than `most`.
+fn passed(made: &Made, trials: &ForkTrials, most: usize) -> Option<Vec<Passed>> {
     let mesh = &made.mesh;
     let mut own: BTreeMap<u32, Vec<u32>> = trials.sound().map(|fork| (fork, Vec::new())).collect();
     for (fork, range) in &made.patches {
@@ -184,9 +184,9 @@ fn passed(made: &Made, trials: &ForkTrials) -> Vec<Passed> {
     for (fork, patch) in patches_near(mesh, &own) {
         near.entry(fork).or_default().push(patch);
     }
-    let passed = near.into_par_iter().filter_map(|(fork, near)| {
-        let own = own.get(&fork)?;
-        let passing = of_others(mesh, own, &near);
+    let passed_by = |(fork, near): &(u32, Vec<u32>)| {
+        let (fork, own) = (*fork, own.get(fork)?);
+        let passing = of_others(mesh, own, near);
         if !(1..=MOST_PASSING).contains(&passing.len()) {
             return None;
         }
@@ -197,8 +197,17 @@ fn passed(made: &Made, trials: &ForkTrials) -> Vec<Passed> {
             passing,
             alternatives: trials.alternatives(fork),
         })
-    });
-    passed.collect()
+    };
+    let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
+    let mut passed = Vec::new();
+    // Piece by piece, so that a crowd is not looked at as a whole only to be left as it is.
+    for near in near.chunks(2 * CROWD) {
+        passed.par_extend(near.par_iter().filter_map(passed_by));
+        if passed.len() > most {
+            return None;
+        }
+    }
+    Some(passed)
 }
 
 /// Patches whose boxes overlap those of forks, which are given by their patches: pairs of fork and patch. Where
