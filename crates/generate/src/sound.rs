@@ -92,8 +92,9 @@ fn doubtful_pieces(mesh: &CoarseMesh, turned: &[usize], leaning: &[usize]) -> Ve
     for &patch in leaning {
         let corners = mesh.patches[patch].corners;
         let thickest = corners.map(radius).into_iter().fold(0.0, f32::max);
-        let own = around(mesh, corners);
-        let volume = own.low.distance(own.high) * thickest * thickest;
+        let [a, b, c, d] = corners.map(at);
+        let length = a.distance(d).max(b.distance(c));
+        let volume = length * thickest * thickest;
         unknown[pieces.of(corners[0]) as usize] += f64::from(volume);
     }
     let first = |patch: usize| mesh.patches[patch].corners[0];
@@ -113,16 +114,11 @@ fn doubtful_pieces(mesh: &CoarseMesh, turned: &[usize], leaning: &[usize]) -> Ve
     patches
 }
 
-/// The box around the corners of a patch.
-fn around(mesh: &CoarseMesh, corners: [u32; 4]) -> Extent {
-    corners.iter().fold(Extent::NONE, |own, &corner| {
-        own.with(mesh.vertices[corner as usize].position)
-    })
-}
-
 fn reaches_beyond(mesh: &CoarseMesh, reach: &Extent, patch: usize) -> bool {
     let corners = mesh.patches[patch].corners;
-    let own = around(mesh, corners);
+    let own = corners.iter().fold(Extent::NONE, |own, &corner| {
+        own.with(mesh.vertices[corner as usize].position)
+    });
     // No curve between the corners leaves them by more than they are apart: nearly all patches are far within.
     let apart = Vec3::splat(own.low.distance(own.high));
     if reach.has(own.low - apart) && reach.has(own.high + apart) {
@@ -157,7 +153,7 @@ const LEAST_VOLUME: f64 = 0.1;
 /// A piece whose rings alone have this share of that volume keeps [`LEAST_VOLUME`] between them: a straight tube of four
 /// sides has 0.7.
 const CLEAR_VOLUME: f64 = 0.3;
-/// Most volume that a leaning patch may take from its piece, in times its length and the square of its thicker radius: a
+/// Most volume that a leaning patch may take from its piece, in times its longer side and the square of its thicker radius: a
 /// quarter of a tube has 0.8 of that, and one that bends is at most three times as long and inside out all along.
 const MOST_TURNED: f64 = 4.0;
 
