@@ -66,7 +66,7 @@
 //! | [`render`] | from coarse meshes to pictures | `render` |
 //! | [`coloring`] | what the colors of pictures tell | `render` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
-//! | [`mesh`] | coarse meshes, surfaces, checks, mesh files | |
+//! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
 //! | [`recipe`] | from a tracing to the mesh that a purpose needs: all stages by one value of options | |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
