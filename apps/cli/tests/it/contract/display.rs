@@ -186,3 +186,15 @@ fn said(child: &mut Child) -> String {
     }
     text
 }
+
+/// Asks a program to end.
+pub(super) fn terminate(child: &Child) {
+    let id = child.id().to_string();
+    let mut kill = Command::new("kill");
+    assert!(
+        kill.args(["-TERM", &id])
+            .status()
+            .expect("kill starts")
+            .success()
+    );
+}

@@ -8,7 +8,7 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::display::{Display, display, ends, start, wait_for};
+use super::display::{Display, display, ends, start, terminate, wait_for};
 use crate::needs::gpu;
 use crate::work::{SMALL, Work};
 
@@ -82,18 +82,6 @@ fn a_window_without_edits_quits_without_a_question() {
     assert!(remembered.contains("cell.swc"), "{remembered}");
 }
 
-/// Asks a program to end.
-fn terminate(child: &std::process::Child) {
-    let id = child.id().to_string();
-    let mut kill = std::process::Command::new("kill");
-    assert!(
-        kill.args(["-TERM", &id])
-            .status()
-            .expect("kill starts")
-            .success()
-    );
-}
-
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu, display))]
 fn a_window_that_is_terminated_remembers_its_settings() {
     let display = Display::open();
@@ -107,7 +95,12 @@ fn a_window_that_is_terminated_remembers_its_settings() {
     let mut errors = std::io::BufReader::new(child.stderr.take().expect("its errors"));
     let mut line = String::new();
     // A command is printed before it runs, and the next one after that.
-    for (key, command) in [("key y", "SetYDown(true)"), ("key o", "SetOrthographic")] {
+    let keys = [
+        ("key y", "SetYDown(true)"),
+        ("key l", "SetLasso(true)"),
+        ("key o", "SetOrthographic"),
+    ];
+    for (key, command) in keys {
         display.xdotool(key);
         while !line.contains(command) {
             line.clear();
@@ -119,7 +112,9 @@ fn a_window_that_is_terminated_remembers_its_settings() {
     let file = work.path("config").join("viewer.toml");
     let remembered = fs::read_to_string(file).expect("remembered");
     assert!(remembered.contains("cell.swc"), "{remembered}");
-    assert!(remembered.contains("y_down = true"), "{remembered}");
+    assert!(remembered.contains("lasso = true"), "{remembered}");
+    // What changes what is seen is the document's, and ends with it.
+    assert!(!remembered.contains("y_down"), "{remembered}");
 }
 
 #[neurotess_testing::test(needs(gpu, display))]
