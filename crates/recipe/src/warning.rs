@@ -101,8 +101,8 @@ pub enum SurfaceWarning {
     WallLeftOut {
         /// Walls.
         walls: usize,
-        /// Of the first; none where it is unknown.
-        sample: Option<i32>,
+        /// Of the first.
+        sample: i32,
     },
     /// No neurite leaves a soma, so that there are no walls.
     NoWalls,
@@ -136,10 +136,10 @@ impl SurfaceWarning {
             | Self::Joined { sample, .. }
             | Self::Handles { sample, .. }
             | Self::PartsDropped { sample, .. }
-            | Self::PartsCutOff { sample, .. } => *sample,
+            | Self::PartsCutOff { sample, .. }
+            | Self::WallLeftOut { sample, .. } => *sample,
             Self::SeveralPieces { samples } => *samples.first()?,
             Self::Thinned { samples } => return samples.first().copied(),
-            Self::WallLeftOut { sample, .. } => (*sample)?,
             Self::ThinTriangles { .. } | Self::NoWalls => return None,
         };
         Some(i64::from(sample))
@@ -179,7 +179,7 @@ impl SurfaceWarning {
         match walled.left_out.first() {
             Some(&sample) => Some(Self::WallLeftOut {
                 walls: walled.left_out.len(),
-                sample: Some(sample),
+                sample,
             }),
             None => walled.regions.is_empty().then_some(Self::NoWalls),
         }

@@ -122,7 +122,8 @@ fn saved_pictures_have_the_axes_that_show() {
             replace: false,
         };
         state(window).run(Command::SavePicture(options));
-        wait(window, "the picture", |_| out.exists());
+        // When the file is there, the next one is not taken yet.
+        wait(window, "the picture", |w| state(w).status.contains(name));
         fs::read(out).expect("saved")
     };
     let with = picture(&mut window, "with.png");
