@@ -3,7 +3,7 @@
 use glam::DVec3;
 use neurotess_morphology::Morphology;
 
-use crate::skeleton::Skeleton;
+use crate::tracing::Skeleton;
 use crate::warning::Warnings;
 
 /// Why there is no mesh.

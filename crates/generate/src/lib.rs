@@ -1,47 +1,25 @@
 //! From a morphology to a closed coarse mesh.
 #![forbid(unsafe_code)]
 
-mod assemble;
-mod bends;
 mod bytes;
-mod crowd;
 mod error;
-mod facets;
-mod fit;
-mod fork;
-mod fork_trials;
-mod forks;
-mod frame;
-mod inset;
-mod joint;
-mod made;
-mod neighborhood;
-mod normals;
+mod judge;
 mod options;
-mod part;
-mod passing;
-mod prepare;
-mod refined_patches;
-mod rings;
+mod plan;
 mod separate;
 mod sides;
-mod skeleton;
-mod smooth;
 mod soma;
-mod somata;
-mod sound;
-mod stems;
 mod stop;
-mod thin;
-mod trials;
-mod uncross;
+mod tracing;
+mod tubes;
 mod warning;
 
 pub use error::GenerateError;
 pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
 pub use separate::{SeparatedPlace, Separation};
 pub use sides::Sides;
-pub use smooth::Smoothing;
+pub use tracing::smooth::Smoothing;
+
 pub use warning::Warning;
 
 use std::sync::atomic::AtomicBool;
@@ -50,11 +28,13 @@ use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Role, Vertex};
 use neurotess_morphology::{Morphology, Soma};
 
-use assemble::Somata;
-use rings::RingRequests;
-use skeleton::Skeleton;
-use sound::Simpler;
+use judge::choose;
+use judge::sound::{self, Simpler};
+use soma::first_rings::RingRequests;
+use soma::stems;
 use stop::Stop;
+use tracing::{Skeleton, mend, smooth, thin};
+use tubes::Somata;
 use warning::Warnings;
 
 /// A coarse mesh and what there is to say about it.
@@ -144,23 +124,23 @@ pub fn generate_stoppable(
     let stop = Stop(stopped);
     let mut warnings = Warnings::default();
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
-    prepare::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
-    prepare::thicken(&mut skeleton, options.least_radius, &mut warnings);
+    mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
+    mend::thicken(&mut skeleton, options.least_radius, &mut warnings);
     error::check_coordinates(morphology, &skeleton, &mut warnings)?;
-    prepare::merge_coincident(&mut skeleton, &mut warnings);
-    let mut soma_spheres = somata::soma_spheres(morphology, &skeleton, options, &mut warnings);
-    prepare::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
+    mend::merge_coincident(&mut skeleton, &mut warnings);
+    let mut soma_spheres = soma::soma_spheres(morphology, &skeleton, options, &mut warnings);
+    mend::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
     if options.radius_factor != 1.0 || options.equal_area.is_some() {
         // After smoothing, which is to take away the noise of the radii that were traced.
-        prepare::change_radii(&mut skeleton, |traced| options.radius(traced));
+        mend::change_radii(&mut skeleton, |traced| options.radius(traced));
         error::check_coordinates(morphology, &skeleton, &mut Warnings::default())?;
     }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     stop.check()?;
     let start = clock();
     let requests = RingRequests::new(morphology, options);
-    let built = somata::build(
+    let built = soma::build(
         &mut skeleton,
         &mut soma_spheres,
         &requests,
@@ -174,7 +154,7 @@ pub fn generate_stoppable(
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);
     skeleton.start_free_trees_at_an_end();
-    prepare::lengthen_single_points(&mut skeleton, &mut warnings);
+    mend::lengthen_single_points(&mut skeleton, &mut warnings);
     thin::space_points(&mut skeleton, &mut warnings);
     let separated = match options.crossings {
         Crossings::Keep => None,
@@ -197,7 +177,7 @@ pub fn generate_stoppable(
         surfaces: &built.somata,
     };
     let mut told = Warnings::default();
-    let mut mesh = forks::mesh(&skeleton, &somata, &may_join, &mut told, stop);
+    let mut mesh = choose::mesh(&skeleton, &somata, &may_join, &mut told, stop);
     for simpler in Simpler::ALL {
         stop.check()?;
         let faulty = sound::faulty_samples(&mesh);
@@ -211,7 +191,7 @@ pub fn generate_stoppable(
             "path turns back within its own tube, which would be inside out: meshed without these turns",
         );
         let simpler = simpler.of(&skeleton, &faulty);
-        mesh = forks::mesh(&simpler, &somata, &|_, _| true, &mut told, stop);
+        mesh = choose::mesh(&simpler, &somata, &|_, _| true, &mut told, stop);
     }
     warnings.extend(told);
     stop.check()?;

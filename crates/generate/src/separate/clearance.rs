@@ -9,7 +9,7 @@ use super::geometry::closest;
 use super::paths::OnSegment;
 use super::rods::Rods;
 use super::search::{MOST_LOOKS, may_touch};
-use crate::skeleton::NONE;
+use crate::tracing::NONE;
 
 /// The branches as they are, to be asked about shorter ways.
 pub(crate) struct Clearance {

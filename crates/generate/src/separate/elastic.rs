@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::rods::Rods;
 use super::spread::Spread;
-use crate::skeleton::NONE;
+use crate::tracing::NONE;
 
 /// Points within this many spread lengths of a contact move.
 const MOVING: f64 = 4.0;

@@ -45,10 +45,10 @@ mod thin_out;
 
 pub use report::{SeparatedPlace, Separation};
 
-use crate::fork;
-use crate::prepare::SomaSphere;
-use crate::skeleton::Skeleton;
+use crate::plan::fork;
 use crate::stop::Stop;
+use crate::tracing::Skeleton;
+use crate::tracing::SomaSphere;
 use crate::warning::Warnings;
 
 use clearance::Clearance;

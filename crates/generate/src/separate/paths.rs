@@ -3,7 +3,7 @@
 //! The point where two ways part is found by heavy paths (Sleator, Tarjan, A data structure for dynamic
 //! trees, 1983): n steps of preparation, log n for each question, whatever the tree.
 
-use crate::skeleton::NONE;
+use crate::tracing::NONE;
 
 /// Where a tree leaves its soma.
 #[derive(Clone, Copy, Debug, PartialEq)]

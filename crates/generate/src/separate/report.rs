@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::rods::Rods;
 use super::search::{Contact, Found, SomaContact};
-use crate::skeleton::{NONE, Skeleton};
+use crate::tracing::{NONE, Skeleton};
 
 /// Where branches were traced through one another, and what moving them apart took.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
-use crate::prepare::SomaSphere;
 use crate::separate::paths::{Origin, Paths};
-use crate::skeleton::{NONE, Root, Skeleton, SkeletonNode};
+use crate::tracing::SomaSphere;
+use crate::tracing::{NONE, Root, Skeleton, SkeletonNode};
 
 /// By how much the soma's surface widens from a ring towards the sphere: as a share of the way. Chosen by
 /// eye.

@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::geometry::direction;
 use super::rods::Rods;
 use super::search::Contact;
-use crate::skeleton::NONE;
+use crate::tracing::NONE;
 
 /// Axes nearer than this many radii of the thinner one tell no side.
 pub(super) const DEEP: f64 = 0.6;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::geometry::direction;
 use super::rods::Rods;
 use super::search::Found;
-use crate::skeleton::NONE;
+use crate::tracing::NONE;
 
 /// A push is spread over this many radii to each side, or over this many times the way that the branch
 /// has to give. From 5 times that way on, lengths stay as they are to a thousandth; 6 has a margin.

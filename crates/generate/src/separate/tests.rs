@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::geometry::closest;
 use super::paths::OnSegment;
 use super::*;
-use crate::skeleton::{NONE, Root, SkeletonNode};
+use crate::tracing::{NONE, Root, SkeletonNode};
 
 /// Straight tubes of one radius, each cut into equal segments.
 struct Tubes(Vec<SkeletonNode>);
@@ -26,7 +26,7 @@ impl Tubes {
             sample,
             kind: neurotess_mesh::SwcType(3),
             section: neurotess_mesh::SectionNumber(sample as i32),
-            marks: crate::skeleton::Marks::default(),
+            marks: crate::tracing::Marks::default(),
         });
         sample as u32 - 1
     }

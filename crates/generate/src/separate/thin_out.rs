@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::rods::{Rods, Role};
-use crate::skeleton::{NONE, off_segment};
+use crate::tracing::{NONE, off_segment};
 
 /// The branch may change by this share of its radius where a point is left out.
 const TOLERANCE: f64 = 0.05;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3};
 
 use super::sphere::Sphere;
-use crate::rings;
+use crate::soma::first_rings;
 
 /// Where a neurite leaves the soma.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Insertion {
     pub(crate) fn raise(&mut self, quad: [f64; 4]) {
         let middle = quad.iter().sum::<f64>() / 4.0;
         let slope = quad.into_iter().fold(middle, f64::max) - middle;
-        let over = rings::over_surface(middle + slope / QUAD_REACH, self.radius);
+        let over = first_rings::over_surface(middle + slope / QUAD_REACH, self.radius);
         self.distance = over.min(self.highest).max(self.distance);
     }
 

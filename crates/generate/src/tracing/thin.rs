@@ -1,0 +1,192 @@
+//! Leaves out what a tube of the traced radius cannot show: twigs inside a thicker neurite, forks
+//! on top of one another, points closer together than the radius allows.
+
+use crate::tracing::{Children, NONE, Root, Skeleton};
+use crate::warning::Warnings;
+
+/// Two forks nearer than this share of the larger radius become one.
+const FORKS_APART: f64 = 0.6;
+/// Consecutive rings are at least this share of the larger radius apart.
+const SPACING: f64 = 0.5;
+/// The first ring after a fork is at least this share of the fork's radius away.
+const FORK_SPACING: f64 = 1.0;
+
+/// Leaves out twigs that end inside the tubes that they branch from.
+pub(crate) fn drop_buried_twigs(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    for _ in 0..3 {
+        let children = skeleton.children();
+        let mut keep = vec![true; skeleton.nodes().len()];
+        let mut dropped = false;
+        for fork in 0..skeleton.nodes().len() as u32 {
+            let branches = children.of(fork);
+            if branches.len() < 2 {
+                continue;
+            }
+            let mut left = branches.len();
+            let thickest = thickest(skeleton, branches);
+            for &branch in branches {
+                let tip = run_end(children, branch);
+                if left == 1 || !children.of(tip).is_empty() {
+                    continue;
+                }
+                if buried(skeleton, fork, branch, tip, &thickest) {
+                    left -= 1;
+                    dropped = true;
+                    mark_run(children, branch, &mut keep);
+                    warnings.add(
+                        "buried_twig",
+                        Some(skeleton.node(tip).sample),
+                        "twig ends inside the neurite that it branches from: left out of the mesh",
+                    );
+                }
+            }
+        }
+        skeleton.retain(&keep);
+        if !dropped {
+            break;
+        }
+    }
+}
+
+/// Last node of the unbranched run that starts at `node`.
+fn run_end(children: &Children, mut node: u32) -> u32 {
+    while let [only] = children.of(node) {
+        node = *only;
+    }
+    node
+}
+
+fn mark_run(children: &Children, mut node: u32, keep: &mut [bool]) {
+    keep[node as usize] = false;
+    while let [only] = children.of(node) {
+        node = *only;
+        keep[node as usize] = false;
+    }
+}
+
+/// A twig is looked for inside this many of its siblings, the thickest ones: what is buried lies inside a
+/// thick neurite, and a fork of thousands costs no square of them.
+const MOST_SIBLINGS: usize = 16;
+
+fn thickest(skeleton: &Skeleton, branches: &[u32]) -> Vec<u32> {
+    let mut thickest = branches.to_vec();
+    if thickest.len() > MOST_SIBLINGS {
+        let thinner = |a: &u32, b: &u32| {
+            let radius = |n: u32| skeleton.node(n).radius;
+            radius(*b).total_cmp(&radius(*a)).then(a.cmp(b))
+        };
+        thickest.select_nth_unstable_by(MOST_SIBLINGS, thinner);
+        thickest.truncate(MOST_SIBLINGS);
+    }
+    thickest
+}
+
+fn buried(skeleton: &Skeleton, fork: u32, branch: u32, tip: u32, siblings: &[u32]) -> bool {
+    let (at, end) = (skeleton.node(fork), skeleton.node(tip));
+    let reach = end.center.distance(at.center);
+    if reach <= at.radius {
+        return true;
+    }
+    if reach > 6.0 * at.radius {
+        return false;
+    }
+    let inside = |other: u32| {
+        let other = skeleton.node(other);
+        let axis = other.center - at.center;
+        let t = ((end.center - at.center).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+        let radius = at.radius + t * (other.radius - at.radius);
+        t.is_finite() && end.center.distance(at.center + axis * t) < 0.9 * radius
+    };
+    let siblings = siblings.iter().copied().filter(|&c| c != branch);
+    let parent = Some(at.parent).filter(|&p| p != NONE);
+    siblings.chain(parent).any(inside)
+}
+
+/// Joins a fork that lies on top of the one before it to that one.
+pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    let children = skeleton.children();
+    let mut keep = vec![true; skeleton.nodes().len()];
+    // Nearest fork above each node, if the run down to the node may all be left out.
+    let mut fork_above: Vec<u32> = vec![NONE; skeleton.nodes().len()];
+    for i in 0..skeleton.nodes().len() as u32 {
+        let node = *skeleton.node(i);
+        let above = match node.parent {
+            NONE => NONE,
+            p if children.of(p).len() > 1 && keep[p as usize] => p,
+            p => fork_above[p as usize],
+        };
+        fork_above[i as usize] = above;
+        if children.of(i).len() < 2 || above == NONE {
+            continue;
+        }
+        let fork = *skeleton.node(above);
+        let apart = FORKS_APART * fork.radius.max(node.radius);
+        if node.center.distance(fork.center) >= apart {
+            continue;
+        }
+        let mut here = i;
+        // What is left out already was so up to the same fork.
+        while here != above && here != NONE && keep[here as usize] {
+            keep[here as usize] = false;
+            here = skeleton.node(here).parent;
+        }
+        warnings.add(
+            "close_forks",
+            Some(node.sample),
+            "fork lies on top of the one before it: joined to it",
+        );
+    }
+    skeleton.retain(&keep);
+}
+
+/// Leaves out ordinary points that are closer to a neighbor than their radius allows.
+pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
+    let children = skeleton.children();
+    let mut keep = vec![true; skeleton.nodes().len()];
+    // Nearest kept node above each node.
+    let mut above: Vec<u32> = vec![NONE; skeleton.nodes().len()];
+    for i in 0..skeleton.nodes().len() as u32 {
+        let node = *skeleton.node(i);
+        let Some(parent) = Some(node.parent).filter(|&p| p != NONE) else {
+            continue;
+        };
+        let mut last = if keep[parent as usize] {
+            parent
+        } else {
+            above[parent as usize]
+        };
+        let hub = children.of(i).len() != 1;
+        let least = |a: u32, b: u32| {
+            let fork = |n: u32| children.of(n).len() > 1;
+            let share = if fork(a) || fork(b) {
+                FORK_SPACING
+            } else {
+                SPACING
+            };
+            share * skeleton.node(a).radius.max(skeleton.node(b).radius)
+        };
+        let near = |a: u32| skeleton.node(a).center.distance(node.center) < least(a, i);
+        if hub {
+            // A fork or end stays: what is too near before it goes.
+            while ordinary(skeleton, children, last) && near(last) {
+                keep[last as usize] = false;
+                last = above[last as usize];
+            }
+        } else if near(last) {
+            keep[i as usize] = false;
+        }
+        above[i as usize] = last;
+    }
+    let dropped = keep.iter().filter(|&&k| !k).count();
+    warnings.add_many(
+        "dense_points",
+        dropped,
+        "point nearer to its neighbor than the radius allows: left out of the mesh",
+    );
+    skeleton.retain(&keep);
+}
+
+fn ordinary(skeleton: &Skeleton, children: &Children, node: u32) -> bool {
+    let root = skeleton.node(node).root;
+    skeleton.node(node).parent != NONE && root == Root::Free && children.of(node).len() == 1
+}
