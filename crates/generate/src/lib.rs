@@ -6,7 +6,6 @@ mod error;
 mod judge;
 mod options;
 mod plan;
-mod separate;
 mod sides;
 mod soma;
 mod stop;
@@ -16,8 +15,8 @@ mod warning;
 
 pub use error::GenerateError;
 pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
-pub use separate::{SeparatedPlace, Separation};
 pub use sides::Sides;
+pub use tracing::separate::{SeparatedPlace, Separation};
 pub use tracing::smooth::Smoothing;
 
 pub use warning::Warning;
@@ -33,7 +32,7 @@ use judge::sound::{self, Simpler};
 use soma::first_rings::RingRequests;
 use soma::stems;
 use stop::Stop;
-use tracing::{Skeleton, mend, smooth, thin};
+use tracing::{Skeleton, coordinates, mend, separate, smooth, thin};
 use tubes::Somata;
 use warning::Warnings;
 
@@ -126,7 +125,7 @@ pub fn generate_stoppable(
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
     mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
     mend::thicken(&mut skeleton, options.least_radius, &mut warnings);
-    error::check_coordinates(morphology, &skeleton, &mut warnings)?;
+    coordinates::check(morphology, &skeleton, &mut warnings)?;
     mend::merge_coincident(&mut skeleton, &mut warnings);
     let mut soma_spheres = soma::soma_spheres(morphology, &skeleton, options, &mut warnings);
     mend::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
@@ -134,7 +133,7 @@ pub fn generate_stoppable(
     if options.radius_factor != 1.0 || options.equal_area.is_some() {
         // After smoothing, which is to take away the noise of the radii that were traced.
         mend::change_radii(&mut skeleton, |traced| options.radius(traced));
-        error::check_coordinates(morphology, &skeleton, &mut Warnings::default())?;
+        coordinates::check(morphology, &skeleton, &mut Warnings::default())?;
     }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     stop.check()?;

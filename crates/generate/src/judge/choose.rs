@@ -12,15 +12,15 @@ use std::collections::BTreeMap;
 use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
+use super::layout::Layout;
 use super::{fit, passing};
 use crate::judge::fork_trials::{ForkFaults, ForkTrials, Judged};
 use crate::judge::neighborhood::Neighborhood;
 use crate::judge::refined_patches::RefinedPatches;
-use crate::plan::ForkChoice;
+use crate::plan::{ForkChoice, MayJoin};
 use crate::stop::Stop;
 use crate::tracing::Skeleton;
 use crate::tubes::Somata;
-use crate::tubes::{Made, MayJoin};
 use crate::warning::Warnings;
 
 /// The mesh of a skeleton with the best choice for each fork.
@@ -32,7 +32,7 @@ pub(crate) fn mesh(
     stop: Stop<'_>,
 ) -> CoarseMesh {
     let mut trials = ForkTrials::new(skeleton);
-    let made = Made::new(skeleton, trials.choices(), Some(somata), may_join);
+    let made = Layout::new(skeleton, trials.choices(), Some(somata), may_join);
     let first = trials.choices().to_vec();
     let judged = judge(&trials, &made, &|fork| fork, stop);
     trials.advance([judged]);
@@ -48,7 +48,7 @@ pub(crate) fn mesh(
             let choices = choices.map(|&node| trials.choices()[node as usize]);
             let choices: Vec<ForkChoice> = choices.collect();
             let may_join = |from: u32, to: u32| may_join(old(from), old(to));
-            let made = Made::new(&near.skeleton, &choices, None, &may_join);
+            let made = Layout::new(&near.skeleton, &choices, None, &may_join);
             judge(&trials, &made, &old, stop)
         });
         let judged: Vec<Judged> = judged.collect();
@@ -58,7 +58,7 @@ pub(crate) fn mesh(
     let made = if trials.choices() == first || stop.asked() {
         made
     } else {
-        Made::new(skeleton, trials.choices(), Some(somata), may_join)
+        Layout::new(skeleton, trials.choices(), Some(somata), may_join)
     };
     warnings.extend(made.warnings);
     let mut mesh = made.mesh;
@@ -78,7 +78,7 @@ pub(crate) fn mesh(
 }
 
 /// Judges the forks of a mesh that are not settled. `old`: a node of the skeleton by that of the mesh's.
-fn judge(trials: &ForkTrials, made: &Made, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) -> Judged {
+fn judge(trials: &ForkTrials, made: &Layout, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) -> Judged {
     let mut near: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (fork, range) in &made.patches {
         if trials.is_open(old(*fork)) {

@@ -4,6 +4,7 @@ pub(crate) mod choose;
 mod facets;
 mod fit;
 mod fork_trials;
+mod layout;
 mod neighborhood;
 mod part;
 mod passing;

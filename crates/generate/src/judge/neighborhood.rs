@@ -129,7 +129,6 @@ mod tests {
     use neurotess_mesh::{SectionNumber, SwcType};
 
     use super::*;
-    use crate::tracing::Marks;
 
     /// A path of 100 nodes with a twig of 20 at node 50.
     fn tree() -> Skeleton {
@@ -141,7 +140,6 @@ mod tests {
             sample,
             kind: SwcType(3),
             section: SectionNumber(1),
-            marks: Marks::default(),
         };
         let mut nodes: Vec<SkeletonNode> = (0..100_u32)
             .map(|i| node(i.checked_sub(1).unwrap_or(NONE), i.into()))

@@ -13,15 +13,15 @@ use glam::Vec3A;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 use rayon::prelude::*;
 
+use super::layout::Layout;
 use crate::judge::facets::Bounds;
 use crate::judge::fork_trials::{ChoiceNumber, ForkFaults, ForkTrials};
 use crate::judge::neighborhood::Neighborhood;
 use crate::judge::part::Part;
 use crate::judge::refined_patches::RefinedPatches;
-use crate::plan::ForkChoice;
+use crate::plan::{ForkChoice, MayJoin};
 use crate::stop::Stop;
 use crate::tracing::Skeleton;
-use crate::tubes::{Made, MayJoin};
 
 /// Most patches of others that a fork is compared with: in crowds nothing can be gained.
 const MOST_PASSING: usize = 200;
@@ -59,7 +59,7 @@ struct Found {
 pub(crate) fn choose(
     trials: &mut ForkTrials,
     skeleton: &Skeleton,
-    made: &Made,
+    made: &Layout,
     may_join: &MayJoin<'_>,
     stop: Stop<'_>,
 ) {
@@ -144,7 +144,7 @@ fn found_in_round(
     let choices = near.nodes.iter();
     let choices = choices.map(|&node| alternative(node).unwrap_or_else(|| choice_now(node)));
     let choices: Vec<ForkChoice> = choices.collect();
-    let made = Made::new(&near.skeleton, &choices, None, &may_join);
+    let made = Layout::new(&near.skeleton, &choices, None, &may_join);
     let refused: BTreeSet<u32> = made.refused.iter().map(|&fork| old(fork)).collect();
     let mut own: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (fork, range) in &made.patches {
@@ -172,7 +172,7 @@ fn found_in_round(
 }
 
 /// Sound forks that patches of other branches cross, ascending; none if there are more than `most`.
-fn passed(made: &Made, trials: &ForkTrials, most: usize) -> Option<Vec<Passed>> {
+fn passed(made: &Layout, trials: &ForkTrials, most: usize) -> Option<Vec<Passed>> {
     let mesh = &made.mesh;
     let mut own: BTreeMap<u32, Vec<u32>> = trials.sound().map(|fork| (fork, Vec::new())).collect();
     for (fork, range) in &made.patches {

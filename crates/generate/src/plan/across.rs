@@ -16,7 +16,7 @@ use super::leave::{AHEAD, CLEAR};
 use super::planner::{End, PathInset, Planner, Start, Way};
 use super::shape::InsetShape;
 use super::zone::Zone;
-use crate::tracing::{NONE, Root, Skeleton};
+use crate::tracing::{NONE, Skeleton};
 
 /// A parent may be this much thicker than the trunk. Up to 1.05, as branches of parents, six forks of twelve cells
 /// have 3.7 % more of their area off the blended surface in the mean, and none less.
@@ -80,7 +80,7 @@ impl Planner<'_> {
             }
             let Some((start, way)) = self.trunk_across(fork) else {
                 self.choices[fork as usize] = ForkChoice::Joint;
-                self.refused.push(fork);
+                self.plan.refused.push(fork);
                 return;
             };
             let path = self.polyline(&start, &way);
@@ -110,7 +110,7 @@ impl Planner<'_> {
             return None;
         };
         let start = match (back.end, self.end_of(&back)) {
-            (End::Joint, _) => Start::Joint(end, NONE, before),
+            (End::Joint, _) => Start::Joint(end, None, before),
             (_, Some(inset)) => Start::Inset(Box::new(*inset)),
             _ => Start::Root(end),
         };
@@ -129,14 +129,13 @@ impl Planner<'_> {
     /// to be a path's end becomes this one's beginning.
     fn begun(&mut self, start: Start, starts: &mut Vec<Start>) -> Start {
         match start {
-            Start::Joint(fork, NONE, before) => {
-                let joint = self.copy(fork, NONE, Root::Free);
-                let children = self.children.of(fork).iter().rev();
-                starts.extend(children.map(|&child| Start::Joint(fork, joint, child)));
-                Start::Joint(fork, joint, before)
+            Start::Joint(fork, None, before) => {
+                let joint = self.add_joint(fork);
+                starts.extend(self.starts_from(fork, joint));
+                Start::Joint(fork, Some(joint), before)
             }
             Start::Inset(inset) => {
-                self.insets[inset.inset as usize].at_end = false;
+                self.plan.insets[inset.inset as usize].at_end = false;
                 self.ends.remove(&inset.fork);
                 Start::Inset(inset)
             }

@@ -1,15 +1,15 @@
-//! Crowded forks, whose branches are too close for one joint, split over several forks that short
-//! segments join.
+//! Crowded joints, whose branches are too close for one joint, split over several that paths without rings between
+//! them join.
 //!
-//! Up to [`MOST_PAIRED`] neighbors the nearest pair moves to a new fork, again and again. Beyond, the
-//! children are halved by direction, so that thousands of them take n log n steps.
+//! Up to [`MOST_PAIRED`] arms the nearest pair moves to a new joint, again and again. Beyond, the arms are halved by
+//! direction, so that thousands of them take n log n steps.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use crate::plan::joint::plane;
-use crate::tracing::{Children, NONE, Root, Skeleton, SkeletonNode};
+use super::joint::plane;
+use super::path::{Arm, Joint, Origin, Path, PathEnd, Plan};
 use crate::warning::Warnings;
 
 /// Least angle about the joint's normal between two of four or more neighbors (radians).
@@ -19,116 +19,93 @@ const MOST_NEIGHBORS: usize = 6;
 /// More neighbors than this are halved: pairing takes the cube of them.
 const MOST_PAIRED: usize = 24;
 
-/// Splits forks of four and more neighbors until their branches are far enough apart for a joint. Each split takes
-/// neighbors from a fork and makes one of three, which is never split, so that this ends.
-pub(crate) fn split_crowded_forks(skeleton: &mut Skeleton, warnings: &mut Warnings) {
-    let children = skeleton.children();
-    let branches = |fork: &u32| children.of(*fork).len() > 2;
-    let mut pending: BTreeSet<u32> = (0..skeleton.nodes().len() as u32)
-        .filter(branches)
-        .collect();
-    let mut tree = Tree::new(skeleton);
+/// Splits joints of four and more arms until these are far enough apart. Each split takes arms from a joint and makes
+/// one of three, which is never split, so that this ends.
+pub(crate) fn split_crowded_joints(plan: &mut Plan, warnings: &mut Warnings) {
+    let crowded = |joint: &u32| plan.joints[*joint as usize].arms.len() > 3;
+    let mut pending: BTreeSet<u32> = (0..plan.joints.len() as u32).filter(crowded).collect();
     while !pending.is_empty() {
         let mut touched = BTreeSet::new();
-        for fork in std::mem::take(&mut pending) {
-            if tree.split(fork, &mut touched) {
+        for joint in std::mem::take(&mut pending) {
+            if plan.split(joint, &mut touched) {
                 warnings.add(
                     "fork_split",
-                    Some(tree.nodes[fork as usize].sample),
+                    Some(plan.joints[joint as usize].label.sample),
                     "fork with branches too close to tell apart: split in two by a short segment",
                 );
             }
         }
         pending = touched;
     }
-    let changed = !tree.changed.is_empty();
-    *skeleton = Skeleton::from_nodes(tree.nodes);
-    if changed {
-        skeleton.reorder();
-    }
 }
 
-/// Nodes with the lists of their children, which change together and here alone.
-struct Tree {
-    nodes: Vec<SkeletonNode>,
-    /// Children of the nodes as they were, but for those in `changed`.
-    before: Children,
-    changed: HashMap<u32, Vec<u32>>,
-}
-
-impl Tree {
-    fn new(skeleton: &mut Skeleton) -> Self {
-        let (nodes, before) = skeleton.take_apart();
-        Self {
-            nodes,
-            before,
-            changed: HashMap::new(),
-        }
-    }
-
-    fn children(&self, node: u32) -> &[u32] {
-        match self.changed.get(&node) {
-            Some(children) => children,
-            None => self.before.of(node),
-        }
-    }
-
-    fn children_mut(&mut self, node: u32) -> &mut Vec<u32> {
-        let before = &self.before;
-        let children = self.changed.entry(node);
-        children.or_insert_with(|| before.of(node).to_vec())
-    }
-
-    /// Splits a fork once if it is crowded; the forks that see another neighbor now go to `touched`.
-    fn split(&mut self, fork: u32, touched: &mut BTreeSet<u32>) -> bool {
-        let parent = Some(self.nodes[fork as usize].parent).filter(|&p| p != NONE);
-        let children = self.children(fork).iter().copied();
-        let around: Vec<u32> = parent.into_iter().chain(children).collect();
-        if around.len() < 4 {
+impl Plan {
+    /// Splits a joint once if it is crowded; the joints that see another neighbor now go to `touched`.
+    fn split(&mut self, joint: u32, touched: &mut BTreeSet<u32>) -> bool {
+        let arms = self.joints[joint as usize].arms.clone();
+        if arms.len() < 4 {
             return false;
         }
-        let directions: Vec<DVec3> = around.iter().map(|&n| self.direction(fork, n)).collect();
-        if around.len() > MOST_PAIRED {
-            self.halve_all(fork, touched);
-        } else if around.len() > MOST_NEIGHBORS || plane(&directions).1 < LEAST_ANGLE {
-            let pair = nearest_pair(&directions).map(|slot| around[slot]);
-            let new = self.branch_off(fork, &pair, &pair.map(|n| self.direction(fork, n)));
-            touched.extend([fork, new].into_iter().chain(pair));
+        let directions = self.directions(joint, &arms);
+        if arms.len() > MOST_PAIRED {
+            self.halve_all(joint, touched);
+        } else if arms.len() > MOST_NEIGHBORS || plane(&directions).1 < LEAST_ANGLE {
+            let pair = nearest_pair(&directions).map(|slot| arms[slot]);
+            let new = self.branch_off(joint, &pair);
+            let beyond = pair.into_iter().filter_map(|arm| self.joint_beyond(arm));
+            touched.extend(beyond.chain([joint, new]));
         } else {
             return false;
         }
         true
     }
 
-    fn direction(&self, from: u32, to: u32) -> DVec3 {
-        let way = self.nodes[to as usize].center - self.nodes[from as usize].center;
-        way.try_normalize().unwrap_or(DVec3::Y)
+    /// Unit directions from a joint along arms of it.
+    fn directions(&self, joint: u32, arms: &[Arm]) -> Vec<DVec3> {
+        let center = self.joints[joint as usize].center;
+        let direction = |&arm: &Arm| {
+            let way = self.first_center(arm) - center;
+            way.try_normalize().unwrap_or(DVec3::Y)
+        };
+        arms.iter().map(direction).collect()
     }
 
-    /// Halves a fork, and the forks that come of it, until each is small enough to be paired. All at once:
-    /// a branch that is paired with this fork searches the list of its children.
-    fn halve_all(&mut self, fork: u32, touched: &mut BTreeSet<u32>) {
-        let mut large = vec![fork];
-        while let Some(fork) = large.pop() {
-            let parent = Some(self.nodes[fork as usize].parent).filter(|&p| p != NONE);
-            let children = self.children(fork).to_vec();
-            // Without a parent one child stays: a fork of two branches would be a path.
-            let moved = &children[usize::from(parent.is_none())..];
-            for new in self.halve(fork, moved) {
-                match self.children(new).len() < MOST_PAIRED {
-                    true => touched.extend(self.children(new).iter().copied().chain([new])),
-                    false => large.push(new),
-                }
-            }
-            touched.insert(fork);
+    /// Center of the first ring of an arm.
+    fn first_center(&self, arm: Arm) -> DVec3 {
+        self.paths[arm.path as usize].rings[self.first_ring(arm)].center
+    }
+
+    /// The joint at the other end of an arm without rings between.
+    fn joint_beyond(&self, arm: Arm) -> Option<u32> {
+        let path = &self.paths[arm.path as usize];
+        match path.end_at(self.first_ring(arm)) {
+            PathEnd::Joint(joint) => Some(joint),
+            PathEnd::Free | PathEnd::Soma(_) | PathEnd::Inset(_) => None,
         }
     }
 
-    /// Moves children to two new forks, by the axis along which their directions differ most.
-    fn halve(&mut self, fork: u32, children: &[u32]) -> [u32; 2] {
-        let directions: Vec<DVec3> = children.iter().map(|&n| self.direction(fork, n)).collect();
+    /// Halves a joint, and those that come of it, until each is small enough to be paired. All at once: a branch that is
+    /// paired with this joint searches the list of its arms.
+    fn halve_all(&mut self, joint: u32, touched: &mut BTreeSet<u32>) {
+        let mut large = vec![joint];
+        while let Some(joint) = large.pop() {
+            let arms = self.joints[joint as usize].arms.clone();
+            // The parent's arm stays, or one of the children: a joint of two arms would be a path.
+            for new in self.halve(joint, &arms[1..]) {
+                match self.joints[new as usize].arms.len() <= MOST_PAIRED {
+                    true => touched.extend([new]),
+                    false => large.push(new),
+                }
+            }
+            touched.insert(joint);
+        }
+    }
+
+    /// Moves arms to two new joints, by the axis along which their directions differ most.
+    fn halve(&mut self, joint: u32, arms: &[Arm]) -> [u32; 2] {
+        let directions = self.directions(joint, arms);
         let axis = widest_axis(&directions);
-        let mut slots: Vec<usize> = (0..children.len()).collect();
+        let mut slots: Vec<usize> = (0..arms.len()).collect();
         let middle = slots.len() / 2;
         slots.select_nth_unstable_by(middle, |&a, &b| {
             let along = directions[a][axis].total_cmp(&directions[b][axis]);
@@ -136,49 +113,76 @@ impl Tree {
         });
         let (low, high) = slots.split_at_mut(middle);
         [low, high].map(|half| {
-            half.sort_unstable(); // children keep their order
-            let nodes: Vec<u32> = half.iter().map(|&slot| children[slot]).collect();
-            let directions: Vec<DVec3> = half.iter().map(|&slot| directions[slot]).collect();
-            self.branch_off(fork, &nodes, &directions)
+            half.sort_unstable(); // arms keep their order
+            let arms: Vec<Arm> = half.iter().map(|&slot| arms[slot]).collect();
+            self.branch_off(joint, &arms)
         })
     }
 
-    /// Moves neighbors of a fork, its parent perhaps the first of them, to a new fork a little way
-    /// towards them.
-    fn branch_off(&mut self, fork: u32, neighbors: &[u32], directions: &[DVec3]) -> u32 {
-        let at = self.nodes[fork as usize];
-        let distance = |&n: &u32| self.nodes[n as usize].center.distance(at.center);
-        let shortest = neighbors.iter().map(distance).fold(f64::INFINITY, f64::min);
+    /// Moves arms of a joint, the parent's perhaps the first of them, to a new joint a little way towards them, and
+    /// links the two.
+    fn branch_off(&mut self, joint: u32, arms: &[Arm]) -> u32 {
+        let directions = self.directions(joint, arms);
+        let at = self.joints[joint as usize].clone();
+        let distances = arms
+            .iter()
+            .map(|&arm| self.first_center(arm).distance(at.center));
+        let shortest = distances.fold(f64::INFINITY, f64::min);
         let mean = directions.iter().sum::<DVec3>().try_normalize();
         let towards = mean.unwrap_or(directions[0]);
-        let new = self.nodes.len() as u32;
-        let between = neighbors[0] == at.parent;
-        self.nodes.push(SkeletonNode {
+        let (new, link) = (self.joints.len() as u32, self.paths.len() as u32);
+        let moved: BTreeSet<u32> = arms.iter().map(|arm| arm.path).collect();
+        let mut left = at.arms.clone();
+        left.retain(|arm| !moved.contains(&arm.path));
+        // The new joint lies between the parent and the old one, or between that and children.
+        let is_above = arms[0].at_end;
+        let [upper, lower] = if is_above { [new, joint] } else { [joint, new] };
+        let arm = |at_end: bool| Arm { path: link, at_end };
+        let mut arms = arms.to_vec();
+        match is_above {
+            true => {
+                left.insert(0, arm(true));
+                arms.insert(1, arm(false));
+            }
+            false => {
+                left.push(arm(false));
+                arms.insert(0, arm(true));
+            }
+        }
+        self.joints[joint as usize].arms = left;
+        self.joints.push(Joint {
             center: at.center + towards * (1.2 * at.radius).min(0.4 * shortest),
-            parent: if between { at.parent } else { fork },
-            root: Root::Free,
+            arms,
             ..at
         });
-        let moved = if between { &neighbors[1..] } else { neighbors };
-        for &node in moved {
-            self.nodes[node as usize].parent = new;
-        }
-        let moved_set: BTreeSet<u32> = moved.iter().copied().collect();
-        let left = self.children_mut(fork);
-        left.retain(|child| !moved_set.contains(child));
-        if between {
-            // The new fork lies between the parent and the old one.
-            self.nodes[fork as usize].parent = new;
-            let siblings = self.children_mut(at.parent);
-            siblings.retain(|&child| child != fork);
-            siblings.push(new);
-            let children = std::iter::once(fork).chain(moved.iter().copied());
-            self.changed.insert(new, children.collect());
-        } else {
-            left.push(new);
-            self.changed.insert(new, moved.to_vec());
-        }
+        self.origins.push(Origin::Joint(new));
+        self.paths.push(Path {
+            start: PathEnd::Joint(upper),
+            rings: [upper, lower]
+                .map(|n| self.joints[n as usize].ring())
+                .to_vec(),
+            end: PathEnd::Joint(lower),
+            zones: Vec::new(),
+        });
+        self.attach(new);
         new
+    }
+
+    /// Lets the paths of a joint's arms begin and end in it.
+    fn attach(&mut self, joint: u32) {
+        let at = &self.joints[joint as usize];
+        let ring = at.ring();
+        for &Arm { path, at_end } in &at.arms {
+            let path = &mut self.paths[path as usize];
+            let (end, slot) = match at_end {
+                true => (&mut path.end, path.rings.last_mut()),
+                false => (&mut path.start, path.rings.first_mut()),
+            };
+            *end = PathEnd::Joint(joint);
+            if let Some(slot) = slot {
+                *slot = ring;
+            }
+        }
     }
 }
 

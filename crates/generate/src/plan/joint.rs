@@ -33,9 +33,29 @@ pub(crate) struct Neighbor {
     pub(crate) radius: f64,
 }
 
+impl Neighbor {
+    /// The neighbor whose ring is at `ring`, seen from a joint. `share`: of the way between them that is this joint's.
+    pub(crate) fn new(joint: DVec3, ring: DVec3, radius: f64, share: f64) -> Self {
+        let way = ring - joint;
+        Self {
+            direction: way.try_normalize().unwrap_or(DVec3::Y),
+            length: way.length() * share,
+            radius,
+        }
+    }
+
+    /// The same with all the room there may be.
+    pub(crate) fn without_limit(self) -> Self {
+        Self {
+            length: f64::INFINITY,
+            ..self
+        }
+    }
+}
+
 /// The vertices of a joint.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Joint {
+pub(crate) struct JointShape {
     /// Normal of the plane that the neighbors lie in.
     pub(crate) normal: DVec3,
     /// The poles on the side of the normal and on the other, relative to the center.
@@ -51,7 +71,7 @@ const LEAST_GAP: f64 = 0.12;
 /// A crotch stays behind this share of the way to either neighbor's ring.
 const BEFORE_RING: f64 = 0.85;
 
-impl Joint {
+impl JointShape {
     /// Joins tubes at a point of radius `radius`.
     pub(crate) fn new(radius: f64, neighbors: &[Neighbor]) -> Self {
         let directions: Vec<DVec3> = neighbors.iter().map(|n| n.direction).collect();
@@ -277,7 +297,7 @@ mod tests {
             neighbor(-0.5, -0.1, 1.0, 0.8),
             neighbor(1.0, 0.2, -0.1, 0.5),
         ];
-        let joint = Joint::new(1.0, &tubes);
+        let joint = JointShape::new(1.0, &tubes);
         let (e1, e2) = joint.normal.any_orthonormal_pair();
         let angle = |d: DVec3| f64::atan2(d.dot(e2), d.dot(e1));
         for i in 0..4 {

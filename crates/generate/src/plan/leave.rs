@@ -6,8 +6,7 @@ use rayon::prelude::*;
 use super::ForkChoice;
 use super::arrange::{Group, arrange};
 use super::cone::distance;
-use super::fork;
-use super::joint::{Joint, Neighbor};
+use super::joint::{JointShape, Neighbor};
 use super::planner::{End, Planner, Start, Way};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
@@ -72,7 +71,7 @@ impl Planner<'_> {
             return Err(refused);
         }
         let groups = arrange(zones, path)?;
-        self.buried.extend(buried);
+        self.plan.buried.extend(buried);
         Ok(groups)
     }
 
@@ -253,20 +252,18 @@ impl Planner<'_> {
 
 /// How far a joint reaches towards each of its neighbors.
 fn joint_reaches(base: &Skeleton, children: &Children, fork: u32) -> Vec<(u32, f64)> {
-    let around = fork::neighbors(children, base, fork);
+    let around = base.neighbors(fork);
+    let at = base.node(fork);
     if children.of(fork).len() >= MOST_NEIGHBORS {
-        let reach = 2.0 * base.node(fork).radius;
+        let reach = 2.0 * at.radius;
         return around.into_iter().map(|node| (node, reach)).collect();
     }
-    let tubes = fork::tubes(base, children, fork, &around);
-    let free: Vec<Neighbor> = tubes
-        .iter()
-        .map(|tube| Neighbor {
-            length: f64::INFINITY,
-            ..*tube
-        })
-        .collect();
-    let joint = Joint::new(base.node(fork).radius, &free);
+    let tube = |&node: &u32| {
+        let node = base.node(node);
+        Neighbor::new(at.center, node.center, node.radius, 1.0).without_limit()
+    };
+    let free: Vec<Neighbor> = around.iter().map(tube).collect();
+    let joint = JointShape::new(at.radius, &free);
     let reaches = (0..).zip(&free);
     let reaches = reaches.map(|(slot, tube)| joint.reach(slot, tube.direction));
     around.into_iter().zip(reaches).collect()

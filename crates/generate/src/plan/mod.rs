@@ -20,27 +20,31 @@
 
 mod across;
 mod arrange;
-pub(crate) mod bends;
+mod bends;
+mod clearance;
 mod cone;
-pub(crate) mod crowd;
-pub(crate) mod fork;
-pub(crate) mod joint;
+mod crowd;
+mod joint;
+mod joint_room;
 mod leave;
+mod path;
 mod path_insets;
+mod planes;
 mod planner;
 mod polyline;
 mod shape;
 mod trunk;
 mod trunk_rings;
-pub(crate) mod uncross;
 mod zone;
 
-use glam::DVec3;
-
-use crate::tracing::Skeleton;
+use crate::tracing::{Skeleton, SomaSphere};
+use crate::warning::Warnings;
 
 pub(crate) use across::is_straight_across;
+pub(crate) use clearance::Disk;
 pub(crate) use cone::{RoundCone, outwards};
+pub(crate) use joint::JointShape;
+pub(crate) use path::{Inset, Joint, Label, Origin, Path, PathEnd, Plan, PlannedRing};
 pub(crate) use shape::{InsetSite, collar, not_too_steep};
 
 /// What a fork becomes.
@@ -87,46 +91,40 @@ impl ForkChoice {
     }
 }
 
-/// A branch that leaves through an inset.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Inset {
-    /// Fork of the skeleton that was laid out.
-    pub(crate) fork: u32,
-    /// Where its axis leaves the trunk, and the unit direction in which it does.
-    pub(crate) exit: DVec3,
-    pub(crate) direction: DVec3,
-    pub(crate) radius: f64,
-    pub(crate) lift: f64,
-    /// Whether the trunk's rings around it lean towards it.
-    pub(crate) leaning: bool,
-    /// Whether the branch's path ends here instead of beginning.
-    pub(crate) at_end: bool,
+/// Whether a path may go straight from one node of the tracing to another below it.
+pub(crate) type MayJoin<'a> = dyn Fn(u32, u32) -> bool + Sync + 'a;
+
+/// Plans the paths of a tracing. `choices`: by node, those that are no forks included; `soma_spheres`: none where
+/// neurites are to be closed by caps.
+pub(crate) fn plan(
+    skeleton: &Skeleton,
+    choices: &[ForkChoice],
+    soma_spheres: &[Option<SomaSphere>],
+    may_join: &MayJoin<'_>,
+    warnings: &mut Warnings,
+) -> Plan {
+    let mut plan = planner::Planner::new(skeleton, choices).plan();
+    warn(&plan, skeleton, warnings);
+    crowd::split_crowded_joints(&mut plan, warnings);
+    joint_room::clear_the_way(&mut plan, warnings);
+    planes::set_planes(&mut plan, soma_spheres, may_join, warnings);
+    bends::split_sharp_bends(&mut plan);
+    plan
 }
 
-impl Inset {
-    /// Unit direction of the branch's path here.
-    pub(crate) fn tangent(&self, direction: DVec3) -> DVec3 {
-        if self.at_end { -direction } else { direction }
+fn warn(plan: &Plan, skeleton: &Skeleton, warnings: &mut Warnings) {
+    for &twig in &plan.buried {
+        warnings.add(
+            "buried_twig",
+            Some(skeleton.node(twig).sample),
+            "twig ends inside the neurite that it branches from: left out of the mesh",
+        );
     }
-}
-
-/// A skeleton whose branches leave through insets where they can.
-pub(crate) struct Layout {
-    pub(crate) skeleton: Skeleton,
-    /// By number of [`Root::Inset`](crate::tracing::Root) or
-    /// [`Marks::ends_in`](crate::tracing::Marks).
-    pub(crate) insets: Vec<Inset>,
-    /// By number of the zone: its insets.
-    pub(crate) zones: Vec<Vec<u32>>,
-    /// Forks that were to have insets, and have no room for them.
-    pub(crate) refused: Vec<u32>,
-    /// Forks that became thicker than they were traced.
-    pub(crate) thickened: Vec<u32>,
-    /// First nodes of branches that end inside their trunk, and are left out.
-    pub(crate) buried: Vec<u32>,
-}
-
-/// Lays a skeleton out. `choices`: by node of the skeleton, those that are no forks included.
-pub(crate) fn lay_out(skeleton: &Skeleton, choices: &[ForkChoice]) -> Layout {
-    planner::Planner::new(skeleton, choices).plan()
+    for &fork in &plan.thickened {
+        warnings.add(
+            "fork_thickened",
+            Some(skeleton.node(fork).sample),
+            "sample at a fork is thinner than two of its neighbors: meshed as thick as the thinner of them",
+        );
+    }
 }

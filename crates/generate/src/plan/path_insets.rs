@@ -1,11 +1,10 @@
 //! Insets that paths begin or end in.
 
-use super::Inset;
+use super::path::{Inset, Label, Path, PathEnd, PlannedRing, RingKind};
 use super::planner::{End, PathInset, Planner, Start, Way};
 use super::polyline::Polyline;
-use super::trunk_rings::{Ring, RingKind};
+use super::trunk_rings::{PlaceKind, RingPlace};
 use super::zone::{Beginning, Zone};
-use crate::tracing::{Marks, NONE, Root, SkeletonNode};
 
 impl PathInset {
     /// Way (µm) from the inset to a ring across the branch, where that is clear of its trunk; `next`: to the next ring.
@@ -19,13 +18,13 @@ impl PathInset {
 impl Planner<'_> {
     /// Adds rings that stand upright where a path is clear of the trunks that it begins or ends on.
     pub(super) fn add_upright(
-        rings: &mut Vec<Ring>,
+        rings: &mut Vec<RingPlace>,
         path: &Polyline,
         [start, end]: [Option<&PathInset>; 2],
     ) {
-        let ring = |arc: f64| Ring {
+        let ring = |arc: f64| RingPlace {
             arc,
-            what: RingKind::Zone(None, None),
+            kind: PlaceKind::Ring(RingKind::Upright),
         };
         let first = rings.first().map_or(0.0, |ring| ring.arc);
         if let Some(arc) = start.and_then(|inset| inset.upright(first)) {
@@ -48,8 +47,8 @@ impl Planner<'_> {
         path: &Polyline,
         starts: &mut Vec<Start>,
     ) -> u32 {
-        let inset = self.insets.len() as u32;
-        self.insets.push(Inset {
+        let inset = self.plan.insets.len() as u32;
+        self.plan.insets.push(Inset {
             leaning: self.choices[zone.fork as usize].is_leaning(),
             at_end: zone.upward,
             fork: zone.fork,
@@ -57,6 +56,8 @@ impl Planner<'_> {
             direction: zone.direction,
             radius: zone.radius,
             lift: zone.lift,
+            // Known once that is planned.
+            path: u32::MAX,
         });
         let (shape, way) = zone
             .onward
@@ -94,58 +95,32 @@ impl Planner<'_> {
         }
     }
 
-    pub(super) fn inset_root(&mut self, start: &PathInset, first: u32) -> u32 {
-        self.nodes.push(SkeletonNode {
-            center: start.shape.center,
-            radius: start.radius,
-            parent: NONE,
-            root: Root::Inset(start.inset),
-            marks: Marks {
-                base: start.fork,
-                ..Marks::default()
-            },
-            ..*self.base.node(first)
-        });
-        self.nodes.len() as u32 - 1
-    }
-
-    /// Adds the last node of a path that ends in an inset.
-    pub(super) fn end_in_inset(&mut self, way: &Way, parent: u32) -> u32 {
-        let Some(end) = self.end_of(way) else {
-            return parent;
-        };
-        // Of a path without nodes of its own the fork stands for it.
-        let last = match way.nodes[..] {
-            [_, .., before, _] => before,
-            _ => end.fork,
-        };
-        let node = SkeletonNode {
-            center: end.shape.center,
-            radius: end.radius,
-            parent,
-            root: Root::Free,
-            marks: Marks {
-                ends_in: end.inset,
-                base: end.fork,
-                ..Marks::default()
-            },
-            ..*self.base.node(last)
-        };
-        self.nodes.push(node);
-        self.nodes.len() as u32 - 1
+    /// The ring that stands for an inset, with the label of a node.
+    pub(super) fn inset_ring(&self, inset: &PathInset, labeled: u32) -> PlannedRing {
+        PlannedRing {
+            center: inset.shape.center,
+            radius: inset.radius,
+            label: Label::of(self.base.node(labeled)),
+            ..PlannedRing::at(inset.fork, self.base.node(inset.fork))
+        }
     }
 
     /// A branch too short for a ring of its own beyond its inset: one right ahead of it.
     pub(super) fn end_ahead(&mut self, start: &PathInset, last: u32) {
-        let parent = self.inset_root(start, last);
+        let first = self.inset_ring(start, last);
         let ahead = start.shape.reach + 0.6 * start.radius;
-        self.nodes.push(SkeletonNode {
-            center: start.shape.center + start.shape.direction * ahead,
-            radius: start.radius,
-            parent,
-            root: Root::Free,
-            marks: Marks::default(),
-            ..*self.base.node(last)
+        self.plan.insets[start.inset as usize].path = self.plan.paths.len() as u32;
+        self.plan.paths.push(Path {
+            start: PathEnd::Inset(start.inset),
+            rings: vec![
+                first,
+                PlannedRing {
+                    center: start.shape.center + start.shape.direction * ahead,
+                    ..first
+                },
+            ],
+            end: PathEnd::Free,
+            zones: Vec::new(),
         });
     }
 }

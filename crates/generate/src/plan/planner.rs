@@ -5,13 +5,14 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::ForkChoice;
 use super::arrange::Group;
+use super::path::{Arm, Joint, Label, Origin, Path, PathEnd, Plan, PlannedRing};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
-use super::trunk_rings::{RingKind, nearest, rings};
+use super::trunk_rings::{PlaceKind, RingPlace, nearest, rings};
 use super::zone::Beginning;
-use super::{ForkChoice, Inset, Layout};
-use crate::tracing::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
+use crate::tracing::{Children, NONE, Root, Skeleton};
 
 /// Tries to lay out a path before all forks left on it become joints.
 const MOST_TRIES: usize = 6;
@@ -20,8 +21,8 @@ const MOST_TRIES: usize = 6;
 pub(super) enum Start {
     /// A root of the skeleton.
     Root(u32),
-    /// A joint: its node, that in the new skeleton, and the child that the path leads to.
-    Joint(u32, u32, u32),
+    /// A joint: its fork, its number once it is planned, and the child that the path leads to.
+    Joint(u32, Option<u32>, u32),
     /// An inset.
     Inset(Box<PathInset>),
 }
@@ -43,12 +44,7 @@ pub(crate) struct Planner<'a> {
     pub(super) base: &'a Skeleton,
     pub(super) children: &'a Children,
     pub(super) choices: Vec<ForkChoice>,
-    pub(super) nodes: Vec<SkeletonNode>,
-    pub(super) insets: Vec<Inset>,
-    zones: Vec<Vec<u32>>,
-    pub(super) refused: Vec<u32>,
-    thickened: Vec<u32>,
-    pub(super) buried: Vec<u32>,
+    pub(super) plan: Plan,
     /// By fork, once asked for: its neighbors, and how far its joint reaches towards them.
     pub(super) joint_reaches: HashMap<u32, Vec<(u32, f64)>>,
     /// By fork whose children are the trunk, once that is laid out: how the parent ends.
@@ -79,18 +75,13 @@ impl<'a> Planner<'a> {
             base,
             children: base.children(),
             choices: choices.to_vec(),
-            nodes: Vec::with_capacity(base.nodes().len() + 64),
-            insets: Vec::new(),
-            zones: Vec::new(),
-            refused: Vec::new(),
-            thickened: Vec::new(),
-            buried: Vec::new(),
+            plan: Plan::default(),
             joint_reaches: HashMap::new(),
             ends: HashMap::new(),
         }
     }
 
-    pub(crate) fn plan(mut self) -> Layout {
+    pub(crate) fn plan(mut self) -> Plan {
         let mut starts = Vec::new();
         // Trunks first, so that the paths that end on them find them; those farthest from the root first of all.
         for fork in (0..self.choices.len() as u32).rev() {
@@ -105,14 +96,7 @@ impl<'a> Planner<'a> {
             }
             self.lay_out_all(&mut starts);
         }
-        Layout {
-            skeleton: Skeleton::from_nodes(self.nodes),
-            insets: self.insets,
-            zones: self.zones,
-            refused: self.refused,
-            thickened: self.thickened,
-            buried: self.buried,
-        }
+        self.plan
     }
 
     fn lay_out_all(&mut self, starts: &mut Vec<Start>) {
@@ -123,22 +107,15 @@ impl<'a> Planner<'a> {
 
     fn lay_out(&mut self, start: &Start, starts: &mut Vec<Start>) {
         let first = match start {
-            Start::Root(root) => {
-                let children = self.children.of(*root);
-                let node = *self.base.node(*root);
-                if children.len() != 1 {
-                    // A joint at the very beginning, or a single point.
-                    let joint = self.copy(*root, NONE, node.root);
-                    starts.extend(
-                        children
-                            .iter()
-                            .rev()
-                            .map(|&c| Start::Joint(*root, joint, c)),
-                    );
+            Start::Root(root) => match self.children.of(*root) {
+                [] => return,
+                [only] => [*root, *only],
+                _ => {
+                    let joint = self.add_joint(*root);
+                    starts.extend(self.starts_from(*root, joint));
                     return;
                 }
-                [*root, children[0]]
-            }
+            },
             Start::Joint(fork, _, child) => [*fork, *child],
             Start::Inset(inset) => match inset.way {
                 Beginning::At(node) => [inset.fork, node],
@@ -165,7 +142,7 @@ impl<'a> Planner<'a> {
         };
         for fork in failed {
             self.choices[fork as usize] = ForkChoice::Joint;
-            self.refused.push(fork);
+            self.plan.refused.push(fork);
         }
     }
 
@@ -224,100 +201,157 @@ impl<'a> Planner<'a> {
         Polyline::new(centers, radii)
     }
 
-    /// Adds a path's nodes, and what starts from it to `starts`.
+    /// Adds a path, and what starts from it to `starts`.
     pub(super) fn emit(
         &mut self,
         start: &Start,
         way: &Way,
-        path: &Polyline,
+        line: &Polyline,
         groups: &[Group],
         starts: &mut Vec<Start>,
     ) {
-        let room = self.room(start, way, path);
-        for &(index, _) in &way.branches {
-            let fork = way.nodes[index];
-            let known = self.thickened.last() == Some(&fork);
-            if !known && path.radii[index] > self.base.node(fork).radius {
-                self.thickened.push(fork);
-            }
-        }
-        let first_zone = self.zones.len() as u32;
-        let last = way.nodes.len() - 1;
-        let mut parent = match start {
-            Start::Root(root) => self.copy(*root, NONE, self.base.node(*root).root),
-            Start::Joint(_, joint, _) => *joint,
-            Start::Inset(inset) => self.inset_root(inset, way.nodes[1]),
-        };
-        let mut rings = rings(path, groups, room, way.end != End::Tip);
+        let room = self.room(start, way, line);
+        self.note_thickened(way, line);
+        let number = self.plan.paths.len() as u32;
         let begins = match start {
             Start::Inset(inset) => Some(&**inset),
             Start::Root(_) | Start::Joint(..) => None,
         };
-        Self::add_upright(&mut rings, path, [begins, self.end_of(way)]);
-        for ring in rings {
-            parent = match ring.what {
-                RingKind::Point(index) if index == last && way.end == End::Inset => {
-                    self.end_in_inset(way, parent)
-                }
-                RingKind::Point(index) => self.copy(way.nodes[index], parent, Root::Free),
-                RingKind::Zone(begins, ends) => {
-                    let number =
-                        |group: Option<usize>| group.map_or(NONE, |g| first_zone + g as u32);
-                    let nearest = nearest(path, ring.arc);
-                    let base = way.nodes[nearest.clamp(1.min(last), last)];
-                    let node = self.base.node(base);
-                    self.nodes.push(SkeletonNode {
-                        center: path.at(ring.arc),
-                        radius: path.radius(ring.arc),
-                        parent,
-                        root: Root::Free,
-                        marks: Marks {
-                            zone_begins: number(begins),
-                            zone_ends: number(ends),
-                            base,
-                            ..Marks::default()
-                        },
-                        ..*node
-                    });
-                    self.nodes.len() as u32 - 1
-                }
-            };
+        let mut places = rings(line, groups, room, way.end != End::Tip);
+        Self::add_upright(&mut places, line, [begins, self.end_of(way)]);
+        let (start, first) = self.begin(start, way, number);
+        let (end, last) = self.end(way, number);
+        let mut planned = Vec::with_capacity(places.len() + 1);
+        planned.push(first);
+        planned.extend(places.iter().map(|place| self.ring(way, line, place)));
+        // The last place is that of the way's last node: a joint or an inset stands for it.
+        if let (Some(slot), Some(last)) = (planned.last_mut(), last) {
+            *slot = last;
         }
-        if way.end == End::Joint {
-            let (joint, fork) = (parent, way.nodes[last]);
-            self.nodes[joint as usize].marks.fork = fork;
-            let children = self.children.of(fork).iter().rev();
-            starts.extend(children.map(|&child| Start::Joint(fork, joint, child)));
+        if let PathEnd::Joint(joint) = end {
+            starts.extend(self.starts_from(way.nodes[way.nodes.len() - 1], joint));
         }
-        for group in groups {
-            let members = group
-                .zones
-                .iter()
-                .map(|zone| self.begin_inset(zone, path, starts));
-            let members = members.collect();
-            self.zones.push(members);
+        let members = |group: &Group| {
+            let zones = group.zones.iter();
+            zones
+                .map(|zone| self.begin_inset(zone, line, starts))
+                .collect()
+        };
+        let zones = groups.iter().map(members).collect();
+        self.plan.paths.push(Path {
+            start,
+            rings: planned,
+            end,
+            zones,
+        });
+    }
+
+    /// What a path begins in, and the ring that stands for it.
+    fn begin(&mut self, start: &Start, way: &Way, path: u32) -> (PathEnd, PlannedRing) {
+        match start {
+            Start::Root(root) => {
+                self.plan.origins.push(Origin::Root(path));
+                let end = match self.base.node(*root).root {
+                    Root::Insertion(soma) => PathEnd::Soma(soma),
+                    Root::Free | Root::Soma(_) => PathEnd::Free,
+                };
+                (end, self.traced(*root))
+            }
+            Start::Joint(fork, joint, _) => {
+                let joint = joint.unwrap_or_else(|| self.add_joint(*fork));
+                let at = &mut self.plan.joints[joint as usize];
+                at.arms.push(Arm {
+                    path,
+                    at_end: false,
+                });
+                (PathEnd::Joint(joint), at.ring())
+            }
+            Start::Inset(inset) => {
+                self.plan.insets[inset.inset as usize].path = path;
+                let ring = self.inset_ring(inset, way.nodes[1]);
+                (PathEnd::Inset(inset.inset), ring)
+            }
         }
     }
 
-    /// Copies a node; forks remember which they are.
-    pub(super) fn copy(&mut self, node: u32, parent: u32, root: Root) -> u32 {
-        let fork = if self.children.of(node).len() > 1 {
-            node
-        } else {
-            NONE
+    /// What a path ends in, and the ring that stands for it; none for that of its last node.
+    fn end(&mut self, way: &Way, path: u32) -> (PathEnd, Option<PlannedRing>) {
+        match (way.end, self.end_of(way).copied()) {
+            (End::Joint, _) => {
+                let joint = self.add_joint(way.nodes[way.nodes.len() - 1]);
+                let at = &mut self.plan.joints[joint as usize];
+                at.arms.push(Arm { path, at_end: true });
+                (PathEnd::Joint(joint), Some(at.ring()))
+            }
+            (End::Inset, Some(inset)) => {
+                self.plan.insets[inset.inset as usize].path = path;
+                // Of a path without nodes of its own the fork stands for it.
+                let labeled = match way.nodes[..] {
+                    [_, .., before, _] => before,
+                    _ => inset.fork,
+                };
+                let ring = self.inset_ring(&inset, labeled);
+                (PathEnd::Inset(inset.inset), Some(ring))
+            }
+            (End::Tip | End::Inset, _) => (PathEnd::Free, None),
+        }
+    }
+
+    /// The ring at a place of a way.
+    fn ring(&self, way: &Way, line: &Polyline, place: &RingPlace) -> PlannedRing {
+        let kind = match place.kind {
+            PlaceKind::Point(index) => return self.traced(way.nodes[index]),
+            PlaceKind::Ring(kind) => kind,
         };
-        self.nodes.push(SkeletonNode {
+        let last = way.nodes.len() - 1;
+        let node = way.nodes[nearest(line, place.arc).clamp(1.min(last), last)];
+        PlannedRing {
+            center: line.at(place.arc),
+            radius: line.radius(place.arc),
+            kind,
+            ..self.traced(node)
+        }
+    }
+
+    /// The ring of a node, as thick as its choice has it.
+    fn traced(&self, node: u32) -> PlannedRing {
+        PlannedRing {
             radius: self.radius(node),
-            parent,
-            root,
-            marks: Marks {
-                fork,
-                base: node,
-                on_soma: self.base.node(node).marks.on_soma,
-                ..Marks::default()
-            },
-            ..*self.base.node(node)
+            ..PlannedRing::at(node, self.base.node(node))
+        }
+    }
+
+    /// Adds the joint of a fork.
+    pub(super) fn add_joint(&mut self, fork: u32) -> u32 {
+        let number = self.plan.joints.len() as u32;
+        let node = self.base.node(fork);
+        self.plan.origins.push(Origin::Joint(number));
+        self.plan.joints.push(Joint {
+            center: node.center,
+            radius: self.radius(fork),
+            normal: DVec3::Y,
+            label: Label::of(node),
+            fork,
+            arms: Vec::new(),
         });
-        self.nodes.len() as u32 - 1
+        number
+    }
+
+    /// The paths of a joint's children, the first one last.
+    pub(super) fn starts_from(&self, fork: u32, joint: u32) -> impl Iterator<Item = Start> + use<> {
+        let children = self.children.of(fork).to_vec();
+        let children = children.into_iter().rev();
+        children.map(move |child| Start::Joint(fork, Some(joint), child))
+    }
+
+    /// Notes which forks on a way are thicker than they were traced.
+    fn note_thickened(&mut self, way: &Way, line: &Polyline) {
+        for &(index, _) in &way.branches {
+            let fork = way.nodes[index];
+            let known = self.plan.thickened.last() == Some(&fork);
+            if !known && line.radii[index] > self.base.node(fork).radius {
+                self.plan.thickened.push(fork);
+            }
+        }
     }
 }

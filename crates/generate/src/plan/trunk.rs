@@ -1,6 +1,5 @@
 //! Which child of a fork continues the trunk.
 
-use super::fork;
 use super::planner::Planner;
 
 /// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
@@ -79,7 +78,7 @@ impl Planner<'_> {
         if !self.choices[node as usize].is_thickened() || self.children.of(node).len() < 2 {
             return own;
         }
-        let around = fork::neighbors(self.children, self.base, node).into_iter();
+        let around = self.base.neighbors(node).into_iter();
         let mut radii: Vec<f64> = around.map(|n| self.base.node(n).radius).collect();
         radii.sort_by(f64::total_cmp);
         own.max(radii[radii.len() - 2])

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::arrange::Group;
+use super::path::RingKind;
 use super::polyline::Polyline;
 use super::zone::Zone;
 
@@ -19,20 +20,19 @@ const SPARSE: f64 = 2.0;
 /// have 2 % more pairs near forks and 5 % more folds than with this one alone.
 const THIN: f64 = 0.6;
 
-/// A ring on a path.
+/// Where a ring is on a path.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ring {
+pub(super) struct RingPlace {
     pub(super) arc: f64,
-    pub(super) what: RingKind,
+    pub(super) kind: PlaceKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum RingKind {
-    /// A point of the path, by its index.
+pub(super) enum PlaceKind {
+    /// At a point of the path, by its index.
     Point(usize),
-    /// A ring between points, for a zone: the group that begins with it, and the one that ends. With neither it is that
-    /// of a branch where it is clear of its trunk.
-    Zone(Option<usize>, Option<usize>),
+    /// Between points.
+    Ring(RingKind),
 }
 
 /// Point of a path nearest to an arc length.
@@ -57,11 +57,11 @@ pub(super) fn rings(
     groups: &[Group],
     room: [f64; 2],
     is_fixed: bool,
-) -> Vec<Ring> {
+) -> Vec<RingPlace> {
     let last = path.arcs.len() - 1;
     let spans = spans(path, groups, room);
     let mut zones = zone_rings(path, &spans).into_iter().peekable();
-    let mut rings: Vec<Ring> = Vec::with_capacity(last + 2 * groups.len());
+    let mut rings: Vec<RingPlace> = Vec::with_capacity(last + 2 * groups.len());
     for index in 1..=last {
         let arc = path.arcs[index];
         while let Some(zone) = zones.next_if(|zone| zone.arc <= arc || index == last) {
@@ -81,9 +81,9 @@ pub(super) fn rings(
         } else if !groups.is_empty() && !is_fixed {
             give_way(&mut rings, path, arc, 0.5);
         }
-        rings.push(Ring {
+        rings.push(RingPlace {
             arc,
-            what: RingKind::Point(index),
+            kind: PlaceKind::Point(index),
         });
     }
     rings
@@ -128,36 +128,40 @@ fn bend_within(path: &Polyline, near: [f64; 2], room: [f64; 2]) -> Option<f64> {
 }
 
 /// Two rings for each group, or one where the next begins right behind it.
-fn zone_rings(path: &Polyline, spans: &[[f64; 2]]) -> Vec<Ring> {
-    let mut rings: Vec<Ring> = Vec::with_capacity(2 * spans.len());
+fn zone_rings(path: &Polyline, spans: &[[f64; 2]]) -> Vec<RingPlace> {
+    let zone = |begins: Option<usize>, ends: Option<usize>| {
+        let [begins, ends] = [begins, ends].map(|group| group.map(|group| group as u32));
+        PlaceKind::Ring(RingKind::Zone { begins, ends })
+    };
+    let mut rings: Vec<RingPlace> = Vec::with_capacity(2 * spans.len());
     for (g, &[low, high]) in spans.iter().enumerate() {
         let near = 0.3 * path.radius(low);
         match rings.last_mut() {
             Some(before) if low - before.arc < near => {
                 before.arc = 0.5 * (before.arc + low);
-                if let RingKind::Zone(begins, _) = &mut before.what {
-                    *begins = Some(g);
+                if let PlaceKind::Ring(RingKind::Zone { begins, .. }) = &mut before.kind {
+                    *begins = Some(g as u32);
                 }
             }
-            _ => rings.push(Ring {
+            _ => rings.push(RingPlace {
                 arc: low,
-                what: RingKind::Zone(Some(g), None),
+                kind: zone(Some(g), None),
             }),
         }
-        rings.push(Ring {
+        rings.push(RingPlace {
             arc: high,
-            what: RingKind::Zone(None, Some(g)),
+            kind: zone(None, Some(g)),
         });
     }
     rings
 }
 
 /// Drops a path's own points that lie too near before a ring that must stay.
-fn give_way(rings: &mut Vec<Ring>, path: &Polyline, arc: f64, share: f64) {
+fn give_way(rings: &mut Vec<RingPlace>, path: &Polyline, arc: f64, share: f64) {
     let near = share * path.radius(arc);
-    while let Some(Ring {
+    while let Some(RingPlace {
         arc: before,
-        what: RingKind::Point(_),
+        kind: PlaceKind::Point(_),
     }) = rings.last()
         && arc - before < near
     {

@@ -14,7 +14,7 @@ use glam::DVec3;
 use neurotess_morphology::{Morphology, shape};
 
 use crate::tracing::SomaSphere;
-use crate::tracing::{Children, Marks, NONE, Root, Skeleton, SkeletonNode};
+use crate::tracing::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 use crate::{GenerateOptions, SomaMethod, SphereKind};
 
@@ -91,6 +91,8 @@ pub(crate) struct PlacedRing {
     pub(crate) farther: bool,
     /// Distance from the soma's center in radii of the soma.
     pub(crate) reach: f64,
+    /// Whether its neurite is so thin that it leaves through an inset.
+    pub(crate) inset: bool,
 }
 
 impl PlacedRing {
@@ -373,12 +375,12 @@ fn insert_at(
                 position: site.position,
                 requested: site.requested,
                 farther: site.farther,
+                inset: site.inset,
                 reach: soma_spheres[site.soma as usize].map_or(0.0, |soma_sphere| {
                     let ring = site.added.map_or(node.center, |(center, _)| center);
                     ring.distance(soma_sphere.center) / soma_sphere.radius
                 }),
             });
-            node.marks.on_soma = site.inset && site.added.is_none();
             match site.added {
                 None => node.root = Root::Insertion(site.soma),
                 Some((center, radius)) => {
@@ -388,10 +390,6 @@ fn insert_at(
                         radius,
                         parent: NONE,
                         root: Root::Insertion(site.soma),
-                        marks: Marks {
-                            on_soma: site.inset,
-                            ..node.marks
-                        },
                         ..node
                     });
                     node.parent = parent;

@@ -13,5 +13,6 @@ mod surface;
 mod trials;
 mod warp;
 
-pub(crate) use somata::{BuiltSoma, build, ring_nodes, soma_spheres};
+pub(crate) use first_rings::SOMA_LIFT;
+pub(crate) use somata::{BuiltSoma, build, soma_spheres};
 pub(crate) use surface::SomaSurface;

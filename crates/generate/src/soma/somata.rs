@@ -123,14 +123,17 @@ pub(crate) fn build(
             &limits,
             &mut trial_warnings,
         );
-        let nodes = ring_nodes(&trial_skeleton, soma_spheres.len());
+        let mut rings_of = vec![Vec::new(); soma_spheres.len()];
+        for ring in &placed {
+            rings_of[ring.soma as usize].push(*ring);
+        }
         let requested = farthest_requests(&placed, soma_spheres.len());
-        let somata: Vec<Option<BuiltSoma>> = (soma_spheres.iter().zip(nodes).zip(&trials))
-            .map(|((soma_sphere, nodes), trial)| {
+        let somata: Vec<Option<BuiltSoma>> = (soma_spheres.iter().zip(&rings_of).zip(&trials))
+            .map(|((soma_sphere, rings), trial)| {
                 Some(build_one(
                     &mut trial_skeleton,
                     (*soma_sphere)?,
-                    &nodes,
+                    rings,
                     options,
                     trial,
                 ))
@@ -211,27 +214,16 @@ fn warn_of_rings(
     );
 }
 
-/// Nodes of each soma's rings, in order.
-pub(crate) fn ring_nodes(skeleton: &Skeleton, somata: usize) -> Vec<Vec<u32>> {
-    let mut rings: Vec<Vec<u32>> = vec![Vec::new(); somata];
-    for (index, node) in skeleton.nodes().iter().enumerate() {
-        if let Root::Insertion(soma) = node.root {
-            rings[soma as usize].push(index as u32);
-        }
-    }
-    rings
-}
-
 fn build_one(
     skeleton: &mut Skeleton,
     soma_sphere: SomaSphere,
-    nodes: &[u32],
+    rings: &[PlacedRing],
     options: &GenerateOptions,
     trial: &Trial,
 ) -> BuiltSoma {
-    let insertions: Vec<Insertion> = nodes
+    let insertions: Vec<Insertion> = rings
         .iter()
-        .map(|&n| insertion(skeleton, n, &soma_sphere))
+        .map(|ring| insertion(skeleton, ring, &soma_sphere))
         .collect();
     let request = SomaRequest {
         center: soma_sphere.center,
@@ -248,16 +240,16 @@ fn build_one(
         },
     };
     let mut surface = surface::rebuild(&request, &insertions);
-    move_rings(skeleton, &mut surface, nodes, &soma_sphere);
+    move_rings(skeleton, &mut surface, rings, &soma_sphere);
     let report = measure(&surface, soma_sphere.radius);
     BuiltSoma { surface, report }
 }
 
-fn insertion(skeleton: &Skeleton, ring: u32, soma_sphere: &SomaSphere) -> Insertion {
-    let node = skeleton.node(ring);
+fn insertion(skeleton: &Skeleton, ring: &PlacedRing, soma_sphere: &SomaSphere) -> Insertion {
+    let node = skeleton.node(ring.node);
     let offset = node.center - soma_sphere.center;
     let distance = offset.length();
-    let next = skeleton.children().of(ring).first();
+    let next = skeleton.children().of(ring.node).first();
     let next = next.map_or(distance, |&next| {
         skeleton.node(next).center.distance(soma_sphere.center)
     });
@@ -265,7 +257,7 @@ fn insertion(skeleton: &Skeleton, ring: u32, soma_sphere: &SomaSphere) -> Insert
         direction: offset.try_normalize().unwrap_or(DVec3::Y),
         distance,
         radius: node.radius,
-        inset: node.marks.on_soma,
+        inset: ring.inset,
         highest: distance.max(next - node.radius),
     }
 }
@@ -274,13 +266,13 @@ fn insertion(skeleton: &Skeleton, ring: u32, soma_sphere: &SomaSphere) -> Insert
 fn move_rings(
     skeleton: &mut Skeleton,
     surface: &mut SomaSurface,
-    nodes: &[u32],
+    placed: &[PlacedRing],
     soma_sphere: &SomaSphere,
 ) {
     let (mut shapes, _) = skeleton.shapes();
     let dropped: BTreeSet<usize> = surface.dropped.iter().copied().collect();
     let (mut rings, mut insets, mut insertions) = (Vec::new(), Vec::new(), Vec::new());
-    for (slot, &node) in nodes.iter().enumerate() {
+    for (slot, node) in placed.iter().map(|ring| ring.node).enumerate() {
         let insertion = surface.insertions[slot];
         if dropped.contains(&slot) {
             shapes.set_root(node, Root::Free);

@@ -27,55 +27,6 @@ pub(crate) struct SkeletonNode {
     pub(crate) kind: SwcType,
     /// The section that it lies on.
     pub(crate) section: SectionNumber,
-    /// What insets and joints need to find again.
-    pub(crate) marks: Marks,
-}
-
-impl SkeletonNode {
-    /// The inset that a path begins or ends in here.
-    pub(crate) fn inset(&self) -> Option<u32> {
-        match self.root {
-            Root::Inset(inset) => Some(inset),
-            _ => Some(self.marks.ends_in).filter(|&inset| inset != NONE),
-        }
-    }
-}
-
-/// What a node stands for besides a point of the tracing; each [`NONE`] where it does not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Marks {
-    /// Zone whose first ring it is.
-    pub(crate) zone_begins: u32,
-    /// Zone whose second ring it is.
-    pub(crate) zone_ends: u32,
-    /// Inset that a path ends in here.
-    pub(crate) ends_in: u32,
-    /// Node of this joint's fork in the skeleton that was laid out.
-    pub(crate) fork: u32,
-    /// Its own node there, or the nearest.
-    pub(crate) base: u32,
-    /// Whether it is the first ring of a neurite so thin that it leaves its soma through an inset.
-    pub(crate) on_soma: bool,
-}
-
-impl Default for Marks {
-    fn default() -> Self {
-        Self {
-            zone_begins: NONE,
-            zone_ends: NONE,
-            ends_in: NONE,
-            fork: NONE,
-            base: NONE,
-            on_soma: false,
-        }
-    }
-}
-
-impl Marks {
-    /// Whether it is a ring of a zone, which must stay.
-    pub(crate) fn of_zone(&self) -> bool {
-        self.zone_begins != NONE || self.zone_ends != NONE
-    }
 }
 
 /// What a root hangs on.
@@ -87,8 +38,6 @@ pub(crate) enum Root {
     Soma(u32),
     /// A soma; the node is the neurite's first ring on it.
     Insertion(u32),
-    /// A trunk, through an inset of this number.
-    Inset(u32),
 }
 
 /// The forest of nodes.
@@ -189,7 +138,6 @@ impl Skeleton {
                     sample: morphology.sample_ids.get(point).copied().unwrap_or(-1),
                     kind: SwcType(section.kind.0),
                     section: SectionNumber(id as i32 + 1),
-                    marks: Marks::default(),
                 });
                 parent = new_index[point];
             }
@@ -230,23 +178,11 @@ impl Skeleton {
         &mut self.nodes
     }
 
-    /// Nodes and lists of children, for a step that changes both together.
-    pub(crate) fn take_apart(&mut self) -> (Vec<SkeletonNode>, Children) {
-        let nodes = std::mem::take(&mut self.nodes);
-        let children = self.children.take();
-        let children = children.unwrap_or_else(|| Children::list(&nodes));
-        (nodes, children)
-    }
-
-    /// How far the path moves if an ordinary node is left out (µm).
-    ///
-    /// # Panics
-    /// If the node has no parent or no child.
-    pub(crate) fn sideways(&self, children: &Children, node: u32) -> f64 {
-        let here = self.node(node).center;
-        let before = self.node(self.node(node).parent).center;
-        let after = self.node(children.of(node)[0]).center;
-        off_segment(here, before, after)
+    /// What a fork joins: its parent, if there is one, then its children.
+    pub(crate) fn neighbors(&self, fork: u32) -> Vec<u32> {
+        let parent = Some(self.node(fork).parent).filter(|&parent| parent != NONE);
+        let children = self.children().of(fork).iter().copied();
+        parent.into_iter().chain(children).collect()
     }
 
     /// Leaves nodes out. Their children move to the nearest kept ancestor, or become roots of the

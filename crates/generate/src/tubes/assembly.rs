@@ -1,61 +1,86 @@
-//! Puts somata, joints and rings together into one closed coarse mesh.
+//! Puts somata, joints and paths together into one closed coarse mesh.
 //!
-//! Every ring is four vertices, counter-clockwise about the path's direction. Two consecutive rings
-//! are joined by four lateral patches. A soma makes the vertices of its insertions' rings, a joint its
-//! poles and crotches, a path all others.
+//! Every ring is four vertices, counter-clockwise about the path's direction. Two consecutive rings are joined by four
+//! lateral patches. A soma makes the vertices of its insertions' rings, a joint its poles and crotches, a path all
+//! others.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{
-    CoarseMesh, Patch, PatchKind, Role, SampleId, SectionNumber, SwcType, TracingPoint, Vertex,
-};
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SampleId, TracingPoint, Vertex};
 use neurotess_morphology::Morphology;
 
-use super::facing::QUARTERS;
-use crate::plan::fork;
-use crate::plan::joint::Joint;
-use crate::plan::{self, Layout};
-use crate::soma::SomaSurface;
-use crate::soma::first_rings;
-use crate::soma::{self, BuiltSoma};
+use super::normals::average_normals;
+use crate::plan::{Joint, JointShape, Label, Origin, PathEnd, Plan, PlannedRing};
+use crate::soma::BuiltSoma;
 use crate::tracing::SomaSphere;
-use crate::tracing::{Children, NONE, Root, Skeleton, SkeletonNode};
-use crate::tubes::average_normals;
 
 /// Four vertices, counter-clockwise about the path's direction.
 pub(super) type Ring = [u32; 4];
-/// First two nodes of a path.
-pub(super) type PathStart = [u32; 2];
-
-/// Makes the mesh. `orientations`: one per node; `somata`: as many as the morphology has, with the
-/// nodes of their insertions in order.
-pub(crate) struct Assembly<'a> {
-    pub(super) skeleton: &'a Skeleton,
-    pub(super) children: &'a Children,
-    pub(super) orientations: &'a [DVec3],
-    pub(super) mesh: CoarseMesh,
-    /// Ring of each insertion node.
-    pub(super) insertion_rings: Vec<(u32, Ring)>,
-    /// Per node: its joint, if it is a fork.
-    pub(super) joints: Vec<Option<Box<MeshJoint>>>,
-    pub(super) layout: &'a Layout,
-    /// Per inset: the node that its branch begins or ends with.
-    pub(super) inset_nodes: Vec<u32>,
-    /// Per inset, once its trunk is made.
-    pub(super) placed: Vec<Option<PlacedInset>>,
-    /// Paths that end in insets that are not placed yet, by these.
-    pub(super) waiting: BTreeMap<u32, PathStart>,
-    /// Patches near a fork, by the fork's node in the skeleton that was laid out.
-    pub(super) fork_patches: Vec<(u32, Range<u32>)>,
-}
 
 /// The somata of a cell, as many as the morphology has.
 pub(crate) struct Somata<'a> {
     pub(crate) morphology: &'a Morphology,
     pub(crate) soma_spheres: &'a [Option<SomaSphere>],
     pub(crate) surfaces: &'a [Option<BuiltSoma>],
+}
+
+/// A mesh, and what became of the forks.
+pub(crate) struct Tubes {
+    pub(crate) mesh: CoarseMesh,
+    /// Patches near a fork, by the fork's node in the tracing.
+    pub(crate) patches: Vec<(u32, Range<u32>)>,
+}
+
+/// The mesh of a plan. Without somata their neurites are closed by caps.
+pub(crate) fn tubes(plan: &Plan, somata: Option<&Somata<'_>>) -> Tubes {
+    let mut assembly = Assembly::new(plan);
+    if let Some(somata) = somata {
+        assembly.add_somata(somata);
+    }
+    assembly.joints = plan
+        .joints
+        .iter()
+        .map(|joint| assembly.joint(joint))
+        .collect();
+    // A branch waits until its trunk is made.
+    let mut starts = Vec::new();
+    for origin in &plan.origins {
+        match *origin {
+            Origin::Root(path) => assembly.path(path, &mut starts),
+            Origin::Joint(joint) => {
+                let arms = plan.joints[joint as usize].arms.iter();
+                for arm in arms.filter(|arm| !arm.at_end) {
+                    assembly.path(arm.path, &mut starts);
+                }
+            }
+        }
+        while let Some(path) = starts.pop() {
+            assembly.path(path, &mut starts);
+        }
+    }
+    debug_assert!(assembly.waiting.is_empty(), "each trunk is made at last");
+    average_normals(&mut assembly.mesh);
+    Tubes {
+        mesh: assembly.mesh,
+        patches: assembly.fork_patches,
+    }
+}
+
+/// A mesh as it grows.
+pub(super) struct Assembly<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) mesh: CoarseMesh,
+    /// By path that begins on a soma: its ring there.
+    pub(super) soma_rings: BTreeMap<u32, Ring>,
+    pub(super) joints: Vec<MeshJoint>,
+    /// By inset, once its trunk is made.
+    pub(super) placed: Vec<Option<PlacedInset>>,
+    /// Paths that end in insets that are not placed yet, by these.
+    pub(super) waiting: BTreeMap<u32, u32>,
+    /// Patches near a fork.
+    pub(super) fork_patches: Vec<(u32, Range<u32>)>,
 }
 
 /// An inset in the mesh.
@@ -69,123 +94,67 @@ pub(super) struct PlacedInset {
 
 /// A joint with its vertices in the mesh.
 pub(super) struct MeshJoint {
-    pub(super) shape: Joint,
-    /// Neighbor nodes as the joint numbers them.
-    pub(super) neighbors: Vec<u32>,
-    pub(super) poles: [u32; 2],
-    pub(super) crotches: Vec<u32>,
+    pub(super) shape: JointShape,
+    poles: [u32; 2],
+    crotches: Vec<u32>,
 }
 
 impl MeshJoint {
-    /// Ring towards a neighbor, counter-clockwise about the direction away from the joint.
-    pub(super) fn ring(&self, neighbor: u32) -> Ring {
-        let k = self.crotches.len();
-        let number = self
-            .neighbors
-            .iter()
-            .position(|&n| n == neighbor)
-            .expect("a path leads to its joint from one of the joint's neighbors");
-        let slot = self.shape.slot(number);
-        let before = self.crotches[(slot + k - 1) % k];
+    /// Ring towards an arm, counter-clockwise about the direction away from the joint.
+    pub(super) fn ring(&self, arm: usize) -> Ring {
+        let count = self.crotches.len();
+        let slot = self.shape.slot(arm);
+        let before = self.crotches[(slot + count - 1) % count];
         [self.poles[0], before, self.poles[1], self.crotches[slot]]
     }
 }
 
 impl<'a> Assembly<'a> {
-    pub(crate) fn new(layout: &'a Layout, orientations: &'a [DVec3]) -> Self {
-        let skeleton = &layout.skeleton;
-        // A ring and four patches a node, and something for somata.
-        let (nodes, soma) = (skeleton.nodes().len(), 1024);
-        let mesh = CoarseMesh {
-            vertices: Vec::with_capacity(4 * nodes + soma),
-            patches: Vec::with_capacity(4 * nodes + soma),
-            tracing: Vec::with_capacity(nodes + soma),
-            ..CoarseMesh::default()
-        };
+    fn new(plan: &'a Plan) -> Self {
+        let rings: usize = plan.paths.iter().map(|path| path.rings.len()).sum();
+        // A ring and four patches for each, and something for somata.
+        let (rings, soma) = (rings, 1024);
         Self {
-            skeleton,
-            children: skeleton.children(),
-            orientations,
-            mesh,
-            insertion_rings: Vec::new(),
-            joints: (0..skeleton.nodes().len()).map(|_| None).collect(),
-            layout,
-            inset_nodes: inset_nodes(layout),
-            placed: layout.insets.iter().map(|_| None).collect(),
+            plan,
+            mesh: CoarseMesh {
+                vertices: Vec::with_capacity(4 * rings + soma),
+                patches: Vec::with_capacity(4 * rings + soma),
+                tracing: Vec::with_capacity(rings + soma),
+                ..CoarseMesh::default()
+            },
+            soma_rings: BTreeMap::new(),
+            joints: Vec::new(),
+            placed: plan.insets.iter().map(|_| None).collect(),
             waiting: BTreeMap::new(),
             fork_patches: Vec::new(),
         }
     }
 
-    /// Adds all somata.
-    pub(crate) fn somata(&mut self, somata: &Somata<'_>) {
-        let ring_nodes = soma::ring_nodes(self.skeleton, somata.surfaces.len());
-        for (index, (soma, nodes)) in somata.surfaces.iter().zip(ring_nodes).enumerate() {
-            if let (Some(soma), Some(soma_sphere)) = (soma, somata.soma_spheres[index]) {
-                let samples = &somata.morphology.somata[index].samples;
-                let sample = samples.first().map_or(-1, |s| s.id);
-                self.soma(&soma.surface, soma_sphere.center, sample, &nodes);
-            }
+    /// Adds the vertices of a joint.
+    fn joint(&mut self, joint: &Joint) -> MeshJoint {
+        let shape = JointShape::new(joint.radius, &self.plan.neighbors(joint));
+        let tracing = self.tracing(&joint.ring(), Role::Joint);
+        let poles = shape.poles.map(|p| self.vertex(joint.center, p, tracing));
+        let crotches = shape.crotches.iter();
+        let crotches = crotches.map(|&c| self.vertex(joint.center, c, tracing));
+        MeshJoint {
+            poles,
+            crotches: crotches.collect(),
+            shape,
         }
     }
 
-    /// Adds a soma; `insertions` are the nodes of its rings, in order.
-    fn soma(&mut self, surface: &SomaSurface, center: DVec3, sample: i64, insertions: &[u32]) {
-        let mut owner = vec![NONE; surface.vertices.len()];
-        for ((&node, ring), inset) in insertions.iter().zip(&surface.rings).zip(&surface.insets) {
-            let tracing = match inset {
-                Some(_) => self.soma_inset(node, center),
-                None => self.tracing(node, Role::Insertion),
-            };
-            ring.iter().for_each(|&v| owner[v as usize] = tracing);
-        }
-        let first = self.mesh.vertices.len() as u32;
-        for (&position, &tracing) in surface.vertices.iter().zip(&owner) {
-            let tracing = if tracing == NONE {
-                self.mesh.tracing.push(TracingPoint {
-                    center: center.as_vec3(),
-                    radius: position.distance(center) as f32,
-                    tangent: Vec3::ZERO,
-                    role: Role::Soma,
-                    collar: 0.0,
-                    kind: SwcType::SOMA,
-                    sample: clamp_id(sample),
-                    section: SectionNumber::SOMA,
-                });
-                self.mesh.tracing.len() as u32 - 1
-            } else {
-                tracing
-            };
-            self.mesh.vertices.push(Vertex {
-                position: position.as_vec3(),
-                normal: Vec3::ZERO,
-                tracing,
-            });
-        }
-        let shift = |q: [u32; 4]| q.map(|v| v + first);
-        for (ring, quad) in surface.rings.iter().zip(&surface.insets) {
-            if let Some(quad) = quad {
-                self.lofts(shift(*quad), shift(*ring));
-            }
-        }
-        let patches = surface.quads.iter();
-        self.mesh.patches.extend(patches.map(|&q| Patch {
-            corners: shift(q),
-            kind: PatchKind::Soma,
-        }));
-        let rings = insertions.iter().zip(&surface.rings);
-        self.insertion_rings
-            .extend(rings.map(|(&node, &ring)| (node, shift(ring))));
-    }
-
-    /// The tracing point of a ring that stands over its soma's surface.
-    fn soma_inset(&mut self, node: u32, soma: DVec3) -> u32 {
-        let SkeletonNode { center, radius, .. } = *self.skeleton.node(node);
-        let tracing = self.tracing(node, Role::Inset);
-        let point = &mut self.mesh.tracing[tracing as usize];
-        point.tangent = (center - soma).normalize_or(DVec3::Y).as_vec3();
-        point.collar = plan::collar(first_rings::SOMA_LIFT * radius, radius, 1.0) as f32;
-        tracing
+    /// Of a joint that a path begins or ends in, the joint and the number of the path's arm.
+    pub(super) fn joint_arm(&self, path: u32, at_end: bool) -> Option<(&MeshJoint, usize)> {
+        let planned = &self.plan.paths[path as usize];
+        let end = if at_end { planned.end } else { planned.start };
+        let PathEnd::Joint(joint) = end else {
+            return None;
+        };
+        let mut arms = self.plan.joints[joint as usize].arms.iter();
+        let arm = arms.position(|arm| arm.path == path && arm.at_end == at_end);
+        let arm = arm.expect("a path that begins or ends in a joint is one of its arms");
+        Some((&self.joints[joint as usize], arm))
     }
 
     /// Patches from the sides of a quad to a ring over it, corner by corner.
@@ -206,145 +175,38 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Adds joints and paths, and returns the mesh, and which patches are near which fork.
-    pub(crate) fn finish(mut self) -> (CoarseMesh, Vec<(u32, Range<u32>)>) {
-        for node in 0..self.skeleton.nodes().len() as u32 {
-            if self.children.of(node).len() > 1 {
-                self.add_joint(node);
-            }
-        }
-        self.insertion_rings.sort_unstable_by_key(|&(node, _)| node);
-        let mut starts = Vec::new();
-        for node in 0..self.skeleton.nodes().len() as u32 {
-            let at = self.skeleton.node(node);
-            let joint = self.joints[node as usize].is_some();
-            // A branch waits until its trunk is made.
-            if joint || at.parent == NONE && !matches!(at.root, Root::Inset(_)) {
-                for child in 0..self.children.of(node).len() {
-                    self.path([node, self.children.of(node)[child]], &mut starts);
-                }
-            }
-            while let Some(start) = starts.pop() {
-                self.path(start, &mut starts);
-            }
-        }
-        debug_assert!(self.waiting.is_empty(), "each trunk is made at last");
-        average_normals(&mut self.mesh);
-        (self.mesh, self.fork_patches)
-    }
-
-    fn add_joint(&mut self, fork: u32) {
-        let node = *self.skeleton.node(fork);
-        let neighbors = fork::neighbors(self.children, self.skeleton, fork);
-        let tubes = fork::tubes(self.skeleton, self.children, fork, &neighbors);
-        let joint = Joint::new(node.radius, &tubes);
-        let tracing = self.tracing(fork, Role::Joint);
-        let poles = joint.poles.map(|p| self.vertex(node.center, p, tracing));
-        let crotches = joint
-            .crotches
-            .iter()
-            .map(|&c| self.vertex(node.center, c, tracing))
-            .collect();
-        self.joints[fork as usize] = Some(Box::new(MeshJoint {
-            shape: joint,
-            neighbors,
-            poles,
-            crotches,
-        }));
-    }
-
-    pub(super) fn tracing(&mut self, node: u32, role: Role) -> u32 {
-        let SkeletonNode {
-            center,
-            radius,
+    /// Adds the tracing point of a ring.
+    pub(super) fn tracing(&mut self, ring: &PlannedRing, role: Role) -> u32 {
+        let Label {
             sample,
             kind,
             section,
-            ..
-        } = *self.skeleton.node(node);
+        } = ring.label;
         self.mesh.tracing.push(TracingPoint {
-            center: center.as_vec3(),
-            radius: radius as f32,
-            tangent: self.orientations[node as usize].as_vec3(),
+            center: ring.center.as_vec3(),
+            radius: ring.radius as f32,
+            tangent: ring.normal.as_vec3(),
             role,
             collar: 0.0,
             kind,
-            sample: clamp_id(sample),
+            sample: sample_id(sample),
             section,
         });
         self.mesh.tracing.len() as u32 - 1
     }
 
+    /// Adds a vertex, which looks away from a center.
     pub(super) fn vertex(&mut self, center: DVec3, offset: DVec3, tracing: u32) -> u32 {
-        let position = (center + offset).as_vec3();
-        let normal = offset.normalize_or_zero().as_vec3();
         self.mesh.vertices.push(Vertex {
-            position,
-            normal,
+            position: (center + offset).as_vec3(),
+            normal: offset.normalize_or_zero().as_vec3(),
             tracing,
         });
         self.mesh.vertices.len() as u32 - 1
     }
-
-    /// A ring of four new vertices at these angles from the frame.
-    pub(super) fn own_ring(
-        &mut self,
-        node: u32,
-        role: Role,
-        tangent: DVec3,
-        frame: DVec3,
-        angles: &[f64; 4],
-    ) -> Ring {
-        let SkeletonNode { center, radius, .. } = *self.skeleton.node(node);
-        let tracing = self.tracing(node, role);
-        self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
-        let side = tangent.cross(frame);
-        let directions = if *angles == QUARTERS {
-            // Nearly all rings, without sines.
-            [frame, side, -frame, -side]
-        } else {
-            angles.map(|angle| frame * angle.cos() + side * angle.sin())
-        };
-        let ring = directions.map(|direction| self.vertex(center, direction * radius, tracing));
-        let slope = if role == Role::Ordinary {
-            self.taper(node)
-        } else {
-            0.0
-        };
-        for vertex in ring {
-            let vertex = &mut self.mesh.vertices[vertex as usize];
-            vertex.normal =
-                (vertex.normal - (tangent * slope).as_vec3()).normalize_or(vertex.normal);
-        }
-        ring
-    }
-
-    /// Change of radius along the path at an ordinary node.
-    fn taper(&self, node: u32) -> f64 {
-        let here = self.skeleton.node(node);
-        let [child] = self.children.of(node) else {
-            return 0.0;
-        };
-        if here.parent == NONE {
-            return 0.0;
-        }
-        let (before, after) = (self.skeleton.node(here.parent), self.skeleton.node(*child));
-        let length = here.center.distance(before.center) + after.center.distance(here.center);
-        ((after.radius - before.radius) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
-    }
-}
-
-fn inset_nodes(layout: &Layout) -> Vec<u32> {
-    let mut nodes = vec![NONE; layout.insets.len()];
-    for (index, node) in (0..).zip(layout.skeleton.nodes()) {
-        if let Some(inset) = node.inset() {
-            nodes[inset as usize] = index;
-        }
-    }
-    nodes
 }
 
 /// Sample numbers beyond 32 bits cannot be exported: they saturate.
-fn clamp_id(id: i64) -> SampleId {
+pub(super) fn sample_id(id: i64) -> SampleId {
     SampleId(id.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
 }

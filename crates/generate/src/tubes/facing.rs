@@ -45,7 +45,7 @@ fn wrap(angle: f64) -> f64 {
 }
 
 /// Where a branch's exit is beside the chord of its zone: the point on the chord, and the way from it.
-fn beside(path: &PathRings, ring: usize, exit: DVec3) -> (DVec3, DVec3) {
+fn beside(path: &PathRings<'_>, ring: usize, exit: DVec3) -> (DVec3, DVec3) {
     let (a, b) = (path.centers[ring], path.centers[ring + 1]);
     let along = path.chord(ring);
     let share = ((exit - a).dot(along) / a.distance(b).max(1e-9)).clamp(0.15, 0.85);
@@ -56,7 +56,11 @@ fn beside(path: &PathRings, ring: usize, exit: DVec3) -> (DVec3, DVec3) {
 
 /// How the rings of zones should turn, so that a quad of each faces its branches. `zones`: first ring,
 /// and the branches.
-pub(super) fn targets(path: &PathRings, zones: &[(usize, Vec<(u32, Inset)>)], out: &mut [Target]) {
+pub(super) fn targets(
+    path: &PathRings<'_>,
+    zones: &[(usize, Vec<(u32, Inset)>)],
+    out: &mut [Target],
+) {
     let mut before = out[0].angle;
     for (ring, insets) in zones {
         // Mean direction modulo a quarter turn: wide branches weigh more.
@@ -81,7 +85,7 @@ pub(super) fn targets(path: &PathRings, zones: &[(usize, Vec<(u32, Inset)>)], ou
 }
 
 /// Gives each branch of a zone the free quad that faces it most, the thickest first.
-pub(super) fn assign(path: &PathRings, ring: usize, insets: &[(u32, Inset)]) -> Vec<Facing> {
+pub(super) fn assign(path: &PathRings<'_>, ring: usize, insets: &[(u32, Inset)]) -> Vec<Facing> {
     let mut order: Vec<&(u32, Inset)> = insets.iter().collect();
     order.sort_by(|a, b| b.1.radius.total_cmp(&a.1.radius).then(a.0.cmp(&b.0)));
     let mut taken = [false; 4];
@@ -156,7 +160,7 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
 /// leave too steeply.
 pub(super) fn settle(
     facing: &mut Facing,
-    path: &PathRings,
+    path: &PathRings<'_>,
     corners: [[f64; 4]; 2],
     trunk: &[RoundCone],
 ) {

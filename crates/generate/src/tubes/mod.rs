@@ -3,12 +3,11 @@
 mod assembly;
 mod facing;
 mod frame;
-mod made;
 mod normals;
 mod path;
 mod path_rings;
+mod soma;
 mod twist;
 
-pub(crate) use assembly::Somata;
-pub(crate) use made::{Made, MayJoin};
+pub(crate) use assembly::{Somata, Tubes, tubes};
 pub(crate) use normals::average_normals;

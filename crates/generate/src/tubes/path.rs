@@ -1,267 +1,204 @@
-//! Tubes along a path, from a root, a joint or an inset to an end, a joint or an inset.
+//! Tubes along a path, from what it begins in to what it ends in.
+
+use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
 use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
 
-use super::assembly::{Assembly, PathStart, PlacedInset, Ring};
-use super::facing::{self, Facing};
+use super::assembly::{Assembly, PlacedInset, Ring};
+use super::facing::{self, Facing, QUARTERS};
+use super::frame;
 use super::path_rings::PathRings;
 use super::twist::{FIXED, Target, relax};
-use crate::plan::{Inset, InsetSite};
-use crate::tracing::{NONE, Root};
-use crate::tubes::frame;
+use crate::plan::{Inset, InsetSite, Path, PathEnd};
+
+/// A zone of a path: its first ring, and the insets there.
+type Zone = (usize, Vec<(u32, Inset)>);
 
 impl Assembly<'_> {
-    /// Builds the tubes from a fork, root or inset to the next fork, end or inset, once that is placed; what leaves
-    /// through insets on the way goes to `starts`.
-    pub(super) fn path(&mut self, start: PathStart, starts: &mut Vec<PathStart>) {
-        let nodes = self.run(start);
-        let end = nodes[nodes.len() - 1];
-        if let Some(inset) = self.skeleton.node(end).inset()
-            && self.placed(end).is_none()
+    /// Builds the tubes of a path; one that ends in an inset waits until that is placed. What leaves through insets on the
+    /// way goes to `starts`.
+    pub(super) fn path(&mut self, number: u32, starts: &mut Vec<u32>) {
+        let plan = self.plan;
+        let path = &plan.paths[number as usize];
+        if let PathEnd::Inset(inset) = path.end
+            && self.placed[inset as usize].is_none()
         {
-            self.waiting.insert(inset, start);
+            self.waiting.insert(inset, number);
             return;
         }
-        let mut path = self.path_rings(nodes);
-        let zones = self.zones_of(&path.nodes);
-        self.turn_rings(&mut path, &zones);
+        let ends = self.ends(number);
+        let mut rings = self.path_rings(path, &ends);
+        let zones = self.zones_of(path);
+        turn_rings(&mut rings, &zones, &ends);
+        // Each branch gets a quad of its zone, and the corners around it move to make that as wide as the branch.
         let mut facing: Vec<Facing> = Vec::new();
         for (ring, insets) in &zones {
-            facing.extend(facing::assign(&path, *ring, insets));
+            facing.extend(facing::assign(&rings, *ring, insets));
         }
-        let angles = corner_angles(&path, &facing);
-        let rings = self.rings(&path, &angles);
-        let first_patches = self.tubes(&path, &rings, &facing);
+        let angles = corner_angles(&rings, &facing);
+        let corners: Vec<Ring> = (0..=path.last())
+            .map(|ring| self.corners(&rings, ring, &angles[ring], &ends))
+            .collect();
+        let first_patches = self.tubes(&corners, &facing, &ends);
         for mut facing in facing {
             let ring = facing.ring;
-            let corners = [angles[ring], angles[ring + 1]];
-            facing::settle(&mut facing, &path, corners, &path.cones(ring));
-            let node = self.inset(&path, &rings, &facing);
-            match self.children.of(node) {
-                // Its branch ends here.
-                [] => starts.extend(self.waiting.remove(&facing.inset)),
-                [second, ..] => starts.push([node, *second]),
+            let quad = [angles[ring], angles[ring + 1]];
+            facing::settle(&mut facing, &rings, quad, &rings.cones(ring));
+            self.inset(&rings, &corners, &facing);
+            let inset = &plan.insets[facing.inset as usize];
+            match inset.at_end {
+                true => starts.extend(self.waiting.remove(&facing.inset)),
+                false => starts.push(inset.path),
             }
         }
-        self.note_forks(&path, &zones, &first_patches);
+        self.note_forks(path, &zones, &first_patches);
     }
 
-    fn path_rings(&self, nodes: Vec<u32>) -> PathRings {
-        let mut centers: Vec<DVec3> = Vec::with_capacity(nodes.len());
-        centers.extend(nodes.iter().map(|&n| self.skeleton.node(n).center));
-        for end in [0, nodes.len() - 1] {
-            if let Some(inset) = self.placed(nodes[end]) {
-                centers[end] = inset.center;
+    /// What is there already at both ends of a path.
+    fn ends(&self, path: u32) -> Ends {
+        Ends([false, true].map(|at_end| self.made_end(path, at_end)))
+    }
+
+    fn made_end(&self, number: u32, at_end: bool) -> Option<MadeEnd> {
+        let path = &self.plan.paths[number as usize];
+        if let Some((joint, arm)) = self.joint_arm(number, at_end) {
+            let ring = joint.ring(arm);
+            // Seen from a path that ends in it the joint's ring runs the other way round.
+            let [up, before, down, after] = ring;
+            return Some(MadeEnd {
+                ring: if at_end {
+                    [up, after, down, before]
+                } else {
+                    ring
+                },
+                corner: joint.shape.normal,
+                inset: None,
+            });
+        }
+        let end = if at_end { path.end } else { path.start };
+        let placed = end
+            .inset()
+            .and_then(|inset| self.placed[inset as usize].as_ref());
+        let (ring, center, inset) = match placed {
+            Some(placed) => (
+                placed.ring,
+                placed.center,
+                Some((placed.center, placed.tangent)),
+            ),
+            None if at_end => return None,
+            None => (*self.soma_rings.get(&number)?, path.rings[0].center, None),
+        };
+        let corner = self.mesh.vertices[ring[0] as usize].position.as_dvec3();
+        Some(MadeEnd {
+            ring,
+            corner: corner - center,
+            inset,
+        })
+    }
+
+    fn path_rings<'p>(&self, path: &'p Path, ends: &Ends) -> PathRings<'p> {
+        let mut centers: Vec<DVec3> = path.rings.iter().map(|ring| ring.center).collect();
+        let mut tangents: Vec<DVec3> = path.rings.iter().map(|ring| ring.normal).collect();
+        let last = path.last();
+        for (end, ring) in ends.0.iter().zip([0, last]) {
+            if let Some((center, tangent)) = end.as_ref().and_then(|end| end.inset) {
+                (centers[ring], tangents[ring]) = (center, tangent);
             }
         }
-        let radii = nodes
-            .iter()
-            .map(|&n| self.skeleton.node(n).radius)
-            .collect();
-        let tangents = self.tangents(&nodes, &centers);
-        let frames = self.frames(&nodes, &centers, &tangents);
+        // A joint looks along the segment that leaves it.
+        for (end, ring, [from, to]) in [(path.start, 0, [0, 1]), (path.end, last, [last - 1, last])]
+        {
+            if end.is_joint() {
+                tangents[ring] = (centers[to] - centers[from])
+                    .try_normalize()
+                    .unwrap_or(tangents[ring]);
+            }
+        }
+        let frames = frames(&centers, &tangents, ends);
         PathRings {
-            nodes,
+            path,
             centers,
-            radii,
+            radii: path.rings.iter().map(|ring| ring.radius).collect(),
             tangents,
             frames,
         }
     }
 
-    /// Nodes from a fork or root to the next fork or end, both included.
-    fn run(&self, start: PathStart) -> Vec<u32> {
-        let mut nodes = start.to_vec();
-        let [_, mut here] = start;
-        while let [only] = self.children.of(here) {
-            nodes.push(*only);
-            here = *only;
-        }
-        nodes
-    }
-
-    fn placed(&self, node: u32) -> Option<&PlacedInset> {
-        let inset = self.skeleton.node(node).inset()?;
-        self.placed[inset as usize].as_ref()
-    }
-
     /// Zones by their first ring.
-    fn zones_of(&self, nodes: &[u32]) -> Vec<(usize, Vec<(u32, Inset)>)> {
-        let zones = nodes.iter().enumerate().filter_map(|(ring, &node)| {
-            let zone = self.skeleton.node(node).marks.zone_begins;
-            (zone != NONE).then_some((ring, zone))
-        });
+    fn zones_of(&self, path: &Path) -> Vec<Zone> {
+        let inset = |&inset: &u32| (inset, self.plan.insets[inset as usize]);
+        let zones = path.zones();
         zones
-            .map(|(ring, zone)| {
-                let insets = self.layout.zones[zone as usize].iter();
-                let insets = insets.map(|&i| (i, self.layout.insets[i as usize]));
-                (ring, insets.collect())
-            })
+            .map(|(ring, insets)| (ring, insets.iter().map(inset).collect()))
             .collect()
     }
 
-    /// Direction of the path at each node; at joints that of the segment.
-    fn tangents(&self, nodes: &[u32], centers: &[DVec3]) -> Vec<DVec3> {
-        let last = nodes.len() - 1;
-        (0..nodes.len())
-            .map(|i| {
-                let own = self.orientations[nodes[i] as usize];
-                if let Some(inset) = self.placed(nodes[i]) {
-                    inset.tangent
-                } else if self.joints[nodes[i] as usize].is_none() {
-                    own
-                } else if i == last {
-                    (centers[i] - centers[i - 1]).try_normalize().unwrap_or(own)
-                } else {
-                    (centers[i + 1] - centers[i]).try_normalize().unwrap_or(own)
-                }
-            })
-            .collect()
-    }
-
-    /// Rotation-minimizing frames from the start on.
-    fn frames(&self, nodes: &[u32], centers: &[DVec3], tangents: &[DVec3]) -> Vec<DVec3> {
-        let first = match (&self.joints[nodes[0] as usize], self.first_ring(nodes[0])) {
-            (Some(joint), _) => frame::across(joint.shape.normal, tangents[0]),
-            (None, Some(ring)) => {
-                let corner = self.mesh.vertices[ring[0] as usize].position.as_dvec3();
-                frame::across(corner - centers[0], tangents[0])
-            }
-            (None, None) => tangents[0].any_orthonormal_vector(),
-        };
-        let mut frames = Vec::with_capacity(nodes.len());
-        frames.push(first);
-        for i in 1..nodes.len() {
-            let way = centers[i] - centers[i - 1];
-            frames.push(frame::transport(
-                way,
-                frames[i - 1],
-                tangents[i - 1],
-                tangents[i],
-            ));
-        }
-        frames
-    }
-
-    /// Ring of an insertion or of an inset.
-    fn first_ring(&self, node: u32) -> Option<Ring> {
-        if let Some(inset) = self.placed(node) {
-            return Some(inset.ring);
-        }
-        let found = self
-            .insertion_rings
-            .binary_search_by_key(&node, |&(node, _)| node)
-            .ok()?;
-        Some(self.insertion_rings[found].1)
-    }
-
-    /// Direction of the first corner of the ring that a path's last node has already: a joint's or an inset's.
-    fn end_frame(&self, path: &PathRings) -> Option<DVec3> {
-        let last = path.nodes.len() - 1;
-        let node = path.nodes[last];
-        let corner = match (&self.joints[node as usize], self.placed(node)) {
-            (Some(joint), _) => joint.shape.normal,
-            (None, Some(inset)) => {
-                let corner = self.mesh.vertices[inset.ring[0] as usize].position;
-                corner.as_dvec3() - inset.center
-            }
-            (None, None) => return None,
-        };
-        Some(frame::across(corner, path.tangents[last]))
-    }
-
-    /// Turns frames as little as possible between the rings that there are, so that quads face the
-    /// branches that leave.
-    fn turn_rings(&self, path: &mut PathRings, zones: &[(usize, Vec<(u32, Inset)>)]) {
-        let last = path.nodes.len() - 1;
-        let end = self.end_frame(path);
-        if zones.is_empty() && end.is_none() {
-            return;
-        }
-        let mut targets = vec![Target::default(); last + 1];
-        let starts_fixed = self.joints[path.nodes[0] as usize].is_some()
-            || self.first_ring(path.nodes[0]).is_some();
-        if starts_fixed {
-            targets[0].weight = FIXED;
-        }
-        facing::targets(path, zones, &mut targets);
-        if let Some(goal) = end {
-            let (_, rest) = frame::quarters(path.frames[last], goal, path.tangents[last]);
-            let before = targets[..last].iter().rev().find(|t| t.weight > 0.0);
-            let before = before.map_or(0.0, |t| t.angle);
-            let quarter = std::f64::consts::FRAC_PI_2;
-            targets[last] = Target {
-                angle: rest + ((before - rest) / quarter).round() * quarter,
-                weight: FIXED,
-            };
-        }
-        let stiffness: Vec<f64> = (0..last)
-            .map(|i| {
-                let length = path.centers[i].distance(path.centers[i + 1]);
-                let radius = path.radii[i].max(path.radii[i + 1]);
-                (radius / length.max(1e-9)).clamp(1e-4, 10.0)
-            })
-            .collect();
-        let angles = relax(&stiffness, &targets);
-        let turned = path.frames.iter_mut().zip(&path.tangents).zip(angles);
-        for ((frame, &tangent), angle) in turned.skip(usize::from(starts_fixed)) {
-            *frame = frame::turn(*frame, tangent, angle);
-        }
-    }
-
-    /// The vertices of all rings: those that there are, and new ones.
-    fn rings(&mut self, path: &PathRings, angles: &[[f64; 4]]) -> Vec<Ring> {
-        let last = path.nodes.len() - 1;
-        (0..=last).map(|i| self.ring(path, i, &angles[i])).collect()
-    }
-
-    fn ring(&mut self, path: &PathRings, i: usize, angles: &[f64; 4]) -> Ring {
-        let (node, last) = (path.nodes[i], path.nodes.len() - 1);
-        if i == 0 {
-            if let Some(joint) = &self.joints[node as usize] {
-                return joint.ring(path.nodes[1]);
-            }
-            if let Some(ring) = self.first_ring(node) {
-                return ring;
-            }
-        }
-        if i == last
-            && let (Some(along), Some(goal)) = (self.last_ring(path), self.end_frame(path))
+    /// The vertices of a ring: those that there are, or new ones.
+    fn corners(
+        &mut self,
+        rings: &PathRings<'_>,
+        ring: usize,
+        angles: &[f64; 4],
+        ends: &Ends,
+    ) -> Ring {
+        let last = rings.last();
+        if ring == 0
+            && let Some(start) = ends.start()
         {
-            let (quarter, _) = frame::quarters(path.frames[i], goal, path.tangents[i]);
-            return [0, 1, 2, 3].map(|k: i32| along[(k - quarter).rem_euclid(4) as usize]);
+            return start.ring;
         }
-        debug_assert!(i > 0 || self.skeleton.node(node).root == Root::Free);
-        let role = if i == 0 || i == last {
-            Role::End
-        } else {
-            Role::Ordinary
-        };
-        self.own_ring(node, role, path.tangents[i], path.frames[i], angles)
+        if ring == last
+            && let Some(end) = ends.end()
+        {
+            // The path's corners have turned by quarters on the way.
+            let goal = frame::across(end.corner, rings.tangents[ring]);
+            let (quarter, _) = frame::quarters(rings.frames[ring], goal, rings.tangents[ring]);
+            return [0, 1, 2, 3].map(|k: i32| end.ring[(k - quarter).rem_euclid(4) as usize]);
+        }
+        let is_end = ring == 0 || ring == last;
+        let role = if is_end { Role::End } else { Role::Ordinary };
+        self.own_ring(rings, ring, role, angles)
     }
 
-    /// The ring that a path's last node has already, counter-clockwise about the path.
-    fn last_ring(&self, path: &PathRings) -> Option<Ring> {
-        let last = path.nodes.len() - 1;
-        let node = path.nodes[last];
-        match &self.joints[node as usize] {
-            Some(joint) => {
-                // Seen from the path the joint's ring runs the other way round.
-                let [up, before, down, after] = joint.ring(path.nodes[last - 1]);
-                Some([up, after, down, before])
-            }
-            None => self.placed(node).map(|inset| inset.ring),
+    /// A ring of four new vertices at these angles from the frame.
+    fn own_ring(
+        &mut self,
+        rings: &PathRings<'_>,
+        ring: usize,
+        role: Role,
+        angles: &[f64; 4],
+    ) -> Ring {
+        let planned = &rings.path.rings[ring];
+        let (tangent, frame) = (rings.tangents[ring], rings.frames[ring]);
+        let tracing = self.tracing(planned, role);
+        self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
+        let side = tangent.cross(frame);
+        let directions = if *angles == QUARTERS {
+            // Nearly all rings, without sines.
+            [frame, side, -frame, -side]
+        } else {
+            angles.map(|angle| frame * angle.cos() + side * angle.sin())
+        };
+        let corners = directions
+            .map(|direction| self.vertex(planned.center, direction * planned.radius, tracing));
+        let slope = match role {
+            Role::Ordinary => rings.taper(ring),
+            _ => 0.0,
+        };
+        for vertex in corners {
+            let vertex = &mut self.mesh.vertices[vertex as usize];
+            vertex.normal =
+                (vertex.normal - (tangent * slope).as_vec3()).normalize_or(vertex.normal);
         }
+        corners
     }
 
     /// Lateral patches between rings, but for quads that branches leave through, and caps at the ends.
     /// Returns the number of the first patch of each segment, and one past the last.
-    fn tubes(&mut self, path: &PathRings, rings: &[Ring], facing: &[Facing]) -> Vec<u32> {
-        let (first, last) = (path.nodes[0], path.nodes.len() - 1);
+    fn tubes(&mut self, rings: &[Ring], facing: &[Facing], ends: &Ends) -> Vec<u32> {
         let mut first_patches = vec![self.mesh.patches.len() as u32];
-        let free = self.joints[first as usize].is_none() && self.first_ring(first).is_none();
-        if free {
+        if ends.start().is_none() {
             let [a, b, c, d] = rings[0];
             self.cap([d, c, b, a]);
         }
@@ -281,8 +218,8 @@ impl Assembly<'_> {
             }
             first_patches.push(self.mesh.patches.len() as u32);
         }
-        if self.last_ring(path).is_none() {
-            self.cap(rings[last]);
+        if ends.end().is_none() {
+            self.cap(rings[rings.len() - 1]);
         }
         first_patches
     }
@@ -294,10 +231,10 @@ impl Assembly<'_> {
         });
     }
 
-    /// Adds an inset with its lofts; returns the node that its branch begins or ends with.
-    fn inset(&mut self, path: &PathRings, rings: &[Ring], facing: &Facing) -> u32 {
+    /// Adds an inset with its lofts.
+    fn inset(&mut self, path: &PathRings<'_>, rings: &[Ring], facing: &Facing) {
         let (ring, side) = (facing.ring, facing.side);
-        let inset = self.layout.insets[facing.inset as usize];
+        let inset = self.plan.insets[facing.inset as usize];
         let shape = InsetSite {
             exit: facing.exit,
             direction: facing.direction,
@@ -306,8 +243,13 @@ impl Assembly<'_> {
             along: path.chord(ring),
         }
         .shape(&path.cones(ring));
-        let node = self.inset_nodes[facing.inset as usize];
-        let tracing = self.tracing(node, Role::Inset);
+        let of_branch = &self.plan.paths[inset.path as usize].rings;
+        let own = if inset.at_end {
+            of_branch.last()
+        } else {
+            of_branch.first()
+        };
+        let tracing = self.tracing(own.expect("paths have rings"), Role::Inset);
         let tangent = inset.tangent(shape.direction);
         let (collar, order) = match inset.at_end {
             false => (shape.collar, [0, 1, 2, 3]),
@@ -337,31 +279,25 @@ impl Assembly<'_> {
             center: shape.center,
             tangent,
         });
-        node
     }
 
     /// Notes which patches are near a fork: those of two segments from joints and insets, and of the
-    /// trunk around a zone.
-    fn note_forks(
-        &mut self,
-        path: &PathRings,
-        zones: &[(usize, Vec<(u32, Inset)>)],
-        first: &[u32],
-    ) {
-        let last = path.nodes.len() - 1;
+    /// trunk around a zone. `first`: the first patch of each segment.
+    fn note_forks(&mut self, path: &Path, zones: &[Zone], first: &[u32]) {
+        let last = path.last();
         let segments = |from: usize, to: usize| first[from.min(last)]..first[to.min(last)];
-        let fork = |end: usize| {
-            let node = self.skeleton.node(path.nodes[end]);
-            let inset = node.inset().map(|inset| inset as usize);
-            inset.map_or(node.marks.fork, |inset| self.layout.insets[inset].fork)
+        let fork = |end: PathEnd| match end {
+            PathEnd::Joint(joint) => Some(self.plan.joints[joint as usize].fork),
+            PathEnd::Inset(inset) => Some(self.plan.insets[inset as usize].fork),
+            PathEnd::Free | PathEnd::Soma(_) => None,
         };
-        let (start, end) = (fork(0), fork(last));
-        if start != NONE {
-            self.fork_patches.push((start, segments(0, 2)));
+        let (start, end) = (fork(path.start), fork(path.end));
+        if let Some(fork) = start {
+            self.fork_patches.push((fork, segments(0, 2)));
         }
-        if end != NONE {
-            self.fork_patches
-                .push((end, segments(last.saturating_sub(2), last)));
+        if let Some(fork) = end {
+            let segments = segments(last.saturating_sub(2), last);
+            self.fork_patches.push((fork, segments));
         }
         for (ring, insets) in zones {
             for (_, inset) in insets {
@@ -372,10 +308,89 @@ impl Assembly<'_> {
     }
 }
 
+/// What is there already where a path begins and where it ends; nothing where it gets rings and caps of its own.
+struct Ends([Option<MadeEnd>; 2]);
+
+impl Ends {
+    fn start(&self) -> Option<&MadeEnd> {
+        self.0[0].as_ref()
+    }
+
+    fn end(&self) -> Option<&MadeEnd> {
+        self.0[1].as_ref()
+    }
+}
+
+/// The ring of a joint, an inset or a soma.
+struct MadeEnd {
+    /// Counter-clockwise about the path.
+    ring: Ring,
+    /// Towards its first corner.
+    corner: DVec3,
+    /// Of an inset: its center, and the direction of the path there.
+    inset: Option<(DVec3, DVec3)>,
+}
+
+/// Rotation-minimizing frames from the start on.
+fn frames(centers: &[DVec3], tangents: &[DVec3], ends: &Ends) -> Vec<DVec3> {
+    let first = match ends.start() {
+        Some(start) => frame::across(start.corner, tangents[0]),
+        None => tangents[0].any_orthonormal_vector(),
+    };
+    let mut frames = Vec::with_capacity(centers.len());
+    frames.push(first);
+    for i in 1..centers.len() {
+        let way = centers[i] - centers[i - 1];
+        frames.push(frame::transport(
+            way,
+            frames[i - 1],
+            tangents[i - 1],
+            tangents[i],
+        ));
+    }
+    frames
+}
+
+/// Turns frames as little as possible between the rings that there are, so that quads face the branches that leave.
+fn turn_rings(rings: &mut PathRings<'_>, zones: &[Zone], ends: &Ends) {
+    let last = rings.last();
+    if zones.is_empty() && ends.end().is_none() {
+        return;
+    }
+    let mut targets = vec![Target::default(); last + 1];
+    let starts_fixed = ends.start().is_some();
+    if starts_fixed {
+        targets[0].weight = FIXED;
+    }
+    facing::targets(rings, zones, &mut targets);
+    if let Some(end) = ends.end() {
+        let goal = frame::across(end.corner, rings.tangents[last]);
+        let (_, rest) = frame::quarters(rings.frames[last], goal, rings.tangents[last]);
+        let before = targets[..last].iter().rev().find(|t| t.weight > 0.0);
+        let before = before.map_or(0.0, |t| t.angle);
+        targets[last] = Target {
+            angle: rest + ((before - rest) / FRAC_PI_2).round() * FRAC_PI_2,
+            weight: FIXED,
+        };
+    }
+    // Long thin segments turn more easily.
+    let stiffness = |i: usize| {
+        let length = rings.centers[i].distance(rings.centers[i + 1]);
+        let radius = rings.radii[i].max(rings.radii[i + 1]);
+        (radius / length.max(1e-9)).clamp(1e-4, 10.0)
+    };
+    let stiffness: Vec<f64> = (0..last).map(stiffness).collect();
+    let angles = relax(&stiffness, &targets);
+    let turned = rings.frames.iter_mut().zip(&rings.tangents).zip(angles);
+    for ((frame, &tangent), angle) in turned.skip(usize::from(starts_fixed)) {
+        *frame = frame::turn(*frame, tangent, angle);
+    }
+}
+
 /// Angles of the corners of every ring.
-fn corner_angles(path: &PathRings, facing: &[Facing]) -> Vec<[f64; 4]> {
+fn corner_angles(path: &PathRings<'_>, facing: &[Facing]) -> Vec<[f64; 4]> {
     let mut from = 0;
-    (0..path.nodes.len())
+    (0..=path.last())
         .map(|ring| {
             while facing.get(from).is_some_and(|f| f.ring + 1 < ring) {
                 from += 1;

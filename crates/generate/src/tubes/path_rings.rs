@@ -2,21 +2,27 @@
 
 use glam::DVec3;
 
-use crate::plan::RoundCone;
+use crate::plan::{Path, RoundCone};
 
 /// Segments of the trunk to either side that an inset stands over.
 const TRUNK_SEGMENTS: usize = 3;
 
-/// A path as it becomes rings.
-pub(super) struct PathRings {
-    pub(super) nodes: Vec<u32>,
+/// A path with the frames of its rings.
+pub(super) struct PathRings<'a> {
+    pub(super) path: &'a Path,
+    /// As planned, but for insets: where these are.
     pub(super) centers: Vec<DVec3>,
     pub(super) radii: Vec<f64>,
     pub(super) tangents: Vec<DVec3>,
     pub(super) frames: Vec<DVec3>,
 }
 
-impl PathRings {
+impl PathRings<'_> {
+    /// Index of the last ring.
+    pub(super) fn last(&self) -> usize {
+        self.path.last()
+    }
+
     /// Angle of a direction about a ring, from its frame on.
     pub(super) fn angle(&self, ring: usize, direction: DVec3) -> f64 {
         let side = self.tangents[ring].cross(self.frames[ring]);
@@ -34,5 +40,12 @@ impl PathRings {
         let first = segment.saturating_sub(TRUNK_SEGMENTS);
         let end = (segment + TRUNK_SEGMENTS + 1).min(self.centers.len() - 1);
         RoundCone::along(&self.centers, &self.radii, first..end)
+    }
+
+    /// Change of radius along the path at a ring between others.
+    pub(super) fn taper(&self, ring: usize) -> f64 {
+        let [before, here, after] = [ring - 1, ring, ring + 1].map(|n| &self.path.rings[n]);
+        let length = here.center.distance(before.center) + after.center.distance(here.center);
+        ((after.radius - before.radius) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
     }
 }

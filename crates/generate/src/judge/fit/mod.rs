@@ -11,8 +11,8 @@
 //! makes no fewer faults. Only positions, radii and normals of vertices change: never what they are joined
 //! to, nor which tracing point they belong to. Work is bounded by stretch; crowds are left as they are.
 //!
-//! Why not by leaving points out, as uncross.rs does: a branch cannot leave out its fork, and the path
-//! would move by radii. Why not by turning rings: uncross.rs has turned them as far as that helps; turning
+//! Why not by leaving points out, as planes.rs does: a branch cannot leave out its fork, and the path
+//! would move by radii. Why not by turning rings: planes.rs has turned them as far as that helps; turning
 //! them further changed what is left in `Neuron`, `astrocyte` and 172993 by 4 % at most, for better or worse.
 
 mod draw_in;

@@ -6,6 +6,7 @@ use neurotess_mesh::{CoarseMesh, PatchKind, Role, TracingPoint};
 use rayon::prelude::*;
 
 use super::graph::RingGraph;
+use crate::plan;
 
 /// Rings are looked at beside those within this many radii along the tree: where a dense tracing wanders,
 /// a tube comes back to itself after some thirty.
@@ -16,8 +17,6 @@ const MOST_VISITED: usize = 400;
 const STEEP: f32 = 1.0;
 /// Cosine of the angle between a ring's neighbors from which on its tube may fold: a turn of 110°.
 const TURN_BACK: f32 = 0.34;
-/// Disks of rings that follow one another are clear by this factor, as in uncross.rs.
-const CLEAR: f32 = 1.05;
 /// Rings that are looked at by one task.
 const CHUNK: usize = 512;
 
@@ -222,12 +221,12 @@ fn follow_badly(a: &TracingPoint, b: &TracingPoint) -> bool {
     if !has_disk(a) || !has_disk(b) {
         return false;
     }
-    let sin = match a.tangent.dot(b.tangent) < 0.0 {
-        true => 1.0,
-        false => a.tangent.cross(b.tangent).length(),
-    };
-    let clear = |tangent: Vec3, radius: f32| way.dot(tangent) > CLEAR * radius * sin;
-    !clear(b.tangent, a.radius) || !clear(a.tangent, b.radius)
+    let [a, b] = [a, b].map(|ring| plan::Disk {
+        center: ring.center.as_dvec3(),
+        normal: ring.tangent.as_dvec3(),
+        radius: ring.radius.into(),
+    });
+    !a.is_clear_of(&b)
 }
 
 /// Whether a path turns so sharply at a ring that its tube may fold over.

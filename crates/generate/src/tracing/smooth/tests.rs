@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use neurotess_morphology::smoothing::AUTO_RADII;
 
 use super::*;
-use crate::tracing::{Marks, Root, SkeletonNode};
+use crate::tracing::{Root, SkeletonNode};
 
 /// A node of a neurite without a soma; its sample, section and type tell it apart.
 fn node(center: DVec3, radius: f64, parent: u32, number: usize) -> SkeletonNode {
@@ -20,7 +20,6 @@ fn node(center: DVec3, radius: f64, parent: u32, number: usize) -> SkeletonNode 
         sample: number as i64 + 7,
         kind: neurotess_mesh::SwcType((number % 3) as i32 + 2),
         section: neurotess_mesh::SectionNumber(number as i32 / 4 + 1),
-        marks: Marks::default(),
     }
 }
 

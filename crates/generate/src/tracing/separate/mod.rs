@@ -45,7 +45,6 @@ mod thin_out;
 
 pub use report::{SeparatedPlace, Separation};
 
-use crate::plan::fork;
 use crate::stop::Stop;
 use crate::tracing::Skeleton;
 use crate::tracing::SomaSphere;
@@ -57,11 +56,8 @@ use rods::Rods;
 use search::{Margin, search};
 use spread::{GAP, Spread};
 
-/// Times that branches are moved apart: points that are left out at forks can make contacts again.
+/// Times that branches are moved apart: points that are left out again can make contacts.
 const MOST_ROUNDS: usize = 4;
-/// In so many rounds points are added; what touches after these is moved with the points that are there, as
-/// those that a fork has no room for would be left out again.
-const ADDING_ROUNDS: usize = 2;
 /// Times that segments are cut: pieces can be nearer to one another than the whole.
 const MOST_CUTS: usize = 3;
 /// Points that may be added, for each traced one, and in any cell.
@@ -86,12 +82,7 @@ pub(crate) fn separate(
 ) -> Separated {
     let mut rods = Rods::new(skeleton, soma_spheres);
     let traced = std::mem::take(skeleton);
-    let report = move_apart(
-        &mut rods,
-        Depths::new(&traced, soma_samples),
-        warnings,
-        stop,
-    );
+    let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), stop);
     warn(&report, warnings);
     *skeleton = rods.skeleton();
     Separated {
@@ -100,18 +91,10 @@ pub(crate) fn separate(
     }
 }
 
-fn move_apart(
-    rods: &mut Rods,
-    mut depths: Depths<'_>,
-    warnings: &mut Warnings,
-    stop: Stop<'_>,
-) -> Separation {
+fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, stop: Stop<'_>) -> Separation {
     let mut complete = true;
     let mut may_add = MOST_ADDED.0 * rods.count() + MOST_ADDED.1;
     for round in 0..MOST_ROUNDS {
-        if round == ADDING_ROUNDS {
-            may_add = 0;
-        }
         let spread = spread_and_cut(rods, &mut may_add);
         let found = search(rods, &rods.centers(), Margin::NONE, None);
         complete &= found.complete;
@@ -124,7 +107,6 @@ fn move_apart(
         complete &= solver::solve(rods, &spread, stop);
         let free = room(rods);
         thin_out::thin_out(rods, &free);
-        clear_forks(rods, warnings);
         // No number of rounds sorts a crowd.
         if !complete || stop.asked() {
             break;
@@ -156,15 +138,6 @@ fn spread_and_cut(rods: &mut Rods, may_add: &mut usize) -> Spread {
         now = spread(rods);
     }
     now
-}
-
-/// Leaves out points that now lie within the reach of a joint beside them.
-fn clear_forks(rods: &mut Rods, warnings: &mut Warnings) {
-    let mut skeleton = rods.skeleton();
-    fork::clear_the_way(&mut skeleton, warnings);
-    if skeleton.nodes().len() < rods.nodes().count() {
-        rods.follow(&skeleton);
-    }
 }
 
 /// Free room at each point (µm); infinite where nothing is near.

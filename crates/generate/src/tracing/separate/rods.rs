@@ -208,24 +208,6 @@ impl Rods {
         }
         Skeleton::from_nodes(nodes)
     }
-
-    /// Leaves out what a step of the skeleton has left out of [`skeleton`](Self::skeleton).
-    pub(super) fn follow(&mut self, skeleton: &Skeleton) {
-        let mut left = skeleton.nodes().iter().peekable();
-        let same = |a: &SkeletonNode, b: &SkeletonNode| {
-            a.center == b.center && a.radius == b.radius && a.sample == b.sample
-        };
-        // Nodes keep their order.
-        let mut keep = vec![true; self.count()];
-        for i in self.nodes() {
-            let node = &self.points[i as usize].node;
-            keep[i as usize] = left.next_if(|other| same(node, other)).is_some();
-        }
-        debug_assert!(left.peek().is_none(), "a node was moved, and not left out");
-        if left.peek().is_none() {
-            self.retain(&keep);
-        }
-    }
 }
 
 /// A new point on a segment, at a share of the way from its upper end.
@@ -251,7 +233,7 @@ fn between(above: &Point, below: &Point, share: f64, parent: u32) -> Point {
 fn sphere_of(node: &SkeletonNode, somata: &[Option<SomaSphere>]) -> Option<SomaSphere> {
     match node.root {
         Root::Soma(soma) | Root::Insertion(soma) => somata[soma as usize],
-        Root::Free | Root::Inset(_) => None,
+        Root::Free => None,
     }
 }
 

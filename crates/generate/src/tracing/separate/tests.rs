@@ -26,7 +26,6 @@ impl Tubes {
             sample,
             kind: neurotess_mesh::SwcType(3),
             section: neurotess_mesh::SectionNumber(sample as i32),
-            marks: crate::tracing::Marks::default(),
         });
         sample as u32 - 1
     }
@@ -336,7 +335,7 @@ proptest! {
         let skeleton = Skeleton::from_nodes(wander(&steps).0);
         let mut rods = Rods::new(&skeleton, &[]);
         let depths = Depths::new(&skeleton, &[]);
-        let report = move_apart(&mut rods, depths, &mut Warnings::default(), Stop::NEVER);
+        let report = move_apart(&mut rods, depths, Stop::NEVER);
         let left = report.places.iter().map(|p| p.after).fold(0.0, f64::max);
         prop_assert!(left <= deepest(&rods));
         if report.complete {
