@@ -27,8 +27,6 @@ use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Role, Vertex};
 use neurotess_morphology::{Morphology, Soma};
 
-use judge::choose;
-use judge::sound::{self, Simpler};
 use soma::first_rings::RingRequests;
 use soma::stems;
 use stop::Stop;
@@ -175,24 +173,7 @@ pub fn generate_stoppable(
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut told = Warnings::default();
-    let mut mesh = choose::mesh(&skeleton, &somata, &may_join, &mut told, stop);
-    for simpler in Simpler::ALL {
-        stop.check()?;
-        let faulty = sound::faulty_samples(&mesh);
-        if faulty.is_empty() {
-            break;
-        }
-        told = Warnings::default();
-        told.add(
-            "simplified",
-            None,
-            "path turns back within its own tube, which would be inside out: meshed without these turns",
-        );
-        let simpler = simpler.of(&skeleton, &faulty);
-        mesh = choose::mesh(&simpler, &somata, &|_, _| true, &mut told, stop);
-    }
-    warnings.extend(told);
+    let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
     stop.check()?;
     mesh.origin = morphology.origin;
     if let Some(sides) = options.equal_area {

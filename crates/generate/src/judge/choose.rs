@@ -4,8 +4,7 @@
 //! No rule from angles and radii foretells which does best on a real tracing: points are too dense, bend
 //! too tightly, or another branch is in the way. So forks whose patches cross or fold over get the next
 //! choice, until all are sound or all choices were tried. After the first try only the neighborhoods of
-//! such forks are laid out again, then those of forks that other branches run through (passing.rs), and in
-//! the end the whole once more.
+//! such forks are laid out again, and in the end the whole once more.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +12,7 @@ use neurotess_mesh::CoarseMesh;
 use rayon::prelude::*;
 
 use super::layout::Layout;
-use super::{fit, passing};
+use super::repair;
 use crate::judge::fork_trials::{ForkFaults, ForkTrials, Judged};
 use crate::judge::neighborhood::Neighborhood;
 use crate::judge::refined_patches::RefinedPatches;
@@ -54,7 +53,6 @@ pub(crate) fn mesh(
         let judged: Vec<Judged> = judged.collect();
         trials.advance(judged);
     }
-    passing::choose(&mut trials, skeleton, &made, may_join, stop);
     let made = if trials.choices() == first || stop.asked() {
         made
     } else {
@@ -67,7 +65,7 @@ pub(crate) fn mesh(
         .iter()
         .filter(|(fork, _)| !trials.is_sound(*fork));
     let faulty: Vec<u32> = faulty.flat_map(|(_, range)| range.clone()).collect();
-    for ring in fit::draw_in_rings(&mut mesh, &faulty, stop) {
+    for ring in repair::draw_in_rings(&mut mesh, &faulty, stop) {
         warnings.add(
             "drawn_in",
             Some(i64::from(mesh.tracing[ring as usize].sample.0)),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::judge::refined_patches::{FinerFaults, RefinedPatches, count};
-use crate::plan::{self, ForkChoice};
+use crate::plan::{self, ForkChoice, MAX_NEIGHBORS};
 use crate::tracing::Skeleton;
 
 /// What is tried, in this order. The lift decides most: 0.4 keeps the branch closest to the tracing,
@@ -27,13 +27,6 @@ const CHOICES: [ForkChoice; 11] = [
 /// The first choice of all forks but those whose children are straighter to one another than to the parent.
 const FIRST: usize = 3;
 const JOINT: usize = CHOICES.len() - 1;
-
-/// Number of a choice, in the order in which they are tried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ChoiceNumber(usize);
-
-/// A fork of more children is split over several joints, and not judged: its patches are too many.
-const MOST_CHILDREN: usize = 5;
 
 const fn across(lift: f64) -> ForkChoice {
     ForkChoice::Inset {
@@ -123,7 +116,7 @@ impl ForkTrials {
         for fork in 0..skeleton.nodes().len() as u32 {
             match children.of(fork).len() {
                 0 | 1 => {}
-                2..=MOST_CHILDREN => {
+                2..MAX_NEIGHBORS => {
                     let trial = Trial::new(plan::is_straight_across(skeleton, fork));
                     choices[fork as usize] = CHOICES[trial.current];
                     trials.insert(fork, trial);
@@ -156,39 +149,6 @@ impl ForkTrials {
         let trial = self.trials.get(&fork);
         let faults = trial.and_then(|trial| trial.faults[trial.current]);
         faults.is_some_and(ForkFaults::is_sound)
-    }
-
-    /// Forks whose present choice has no faults at level 2.
-    pub(crate) fn sound(&self) -> impl Iterator<Item = u32> {
-        let sound = self.trials.keys().copied();
-        sound.filter(|&fork| self.is_sound(fork))
-    }
-
-    /// How many forks are judged.
-    pub(crate) fn forks(&self) -> usize {
-        self.trials.len()
-    }
-
-    /// The present choice of a fork and all others that may be as sound.
-    pub(crate) fn alternatives(&self, fork: u32) -> Vec<(ChoiceNumber, ForkChoice)> {
-        let Some(trial) = self.trials.get(&fork) else {
-            return Vec::new();
-        };
-        let present = trial.faults[trial.current].unwrap_or_default();
-        let as_sound = |n: &usize| trial.faults[*n].is_none_or(|faults| faults <= present);
-        let others = (0..CHOICES.len()).filter(as_sound);
-        let others = others.filter(|&n| n != trial.current);
-        let all = std::iter::once(trial.current).chain(others);
-        all.map(|n| (ChoiceNumber(n), CHOICES[n])).collect()
-    }
-
-    /// Gives a fork another choice.
-    pub(crate) fn replace(&mut self, fork: u32, choice: ChoiceNumber, faults: ForkFaults) {
-        if let Some(trial) = self.trials.get_mut(&fork) {
-            trial.current = choice.0;
-            trial.faults[choice.0] = Some(faults);
-            self.choices[fork as usize] = CHOICES[choice.0];
-        }
     }
 
     /// Goes on to what is tried next. `judged`: the present choices, in parts.

@@ -50,11 +50,6 @@ impl Neighborhood {
         });
         parts.collect()
     }
-
-    /// Whether it has a node of the whole skeleton.
-    pub(crate) fn has(&self, node: u32) -> bool {
-        self.nodes.binary_search(&node).is_ok()
-    }
 }
 
 /// By node: the number of its part, [`NONE`] of nodes that are not kept. Trees in the order of their roots fill one

@@ -1,23 +1,20 @@
 //! Crowded joints, whose branches are too close for one joint, split over several that paths without rings between
 //! them join.
 //!
-//! Up to [`MOST_PAIRED`] arms the nearest pair moves to a new joint, again and again. Beyond, the arms are halved by
-//! direction, so that thousands of them take n log n steps.
+//! More than [`MAX_NEIGHBORS`] arms are halved by direction, again and again, so that thousands of them take n log n
+//! steps. Of fewer the nearest pair moves to a new joint where it is too near for one.
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 
+use super::MAX_NEIGHBORS;
 use super::joint::plane;
 use super::path::{Arm, Joint, Origin, Path, PathEnd, Plan};
 use crate::warning::Warnings;
 
 /// Least angle about the joint's normal between two of four or more neighbors (radians).
 const LEAST_ANGLE: f64 = 0.35;
-/// More neighbors than this are split over several joints.
-const MOST_NEIGHBORS: usize = 6;
-/// More neighbors than this are halved: pairing takes the cube of them.
-const MOST_PAIRED: usize = 24;
 
 /// Splits joints of four and more arms until these are far enough apart. Each split takes arms from a joint and makes
 /// one of three, which is never split, so that this ends.
@@ -47,9 +44,9 @@ impl Plan {
             return false;
         }
         let directions = self.directions(joint, &arms);
-        if arms.len() > MOST_PAIRED {
+        if arms.len() > MAX_NEIGHBORS {
             self.halve_all(joint, touched);
-        } else if arms.len() > MOST_NEIGHBORS || plane(&directions).1 < LEAST_ANGLE {
+        } else if plane(&directions).1 < LEAST_ANGLE {
             let pair = nearest_pair(&directions).map(|slot| arms[slot]);
             let new = self.branch_off(joint, &pair);
             let beyond = pair.into_iter().filter_map(|arm| self.joint_beyond(arm));
@@ -84,15 +81,14 @@ impl Plan {
         }
     }
 
-    /// Halves a joint, and those that come of it, until each is small enough to be paired. All at once: a branch that is
-    /// paired with this joint searches the list of its arms.
+    /// Halves a joint, and those that come of it, until each is small enough.
     fn halve_all(&mut self, joint: u32, touched: &mut BTreeSet<u32>) {
         let mut large = vec![joint];
         while let Some(joint) = large.pop() {
             let arms = self.joints[joint as usize].arms.clone();
             // The parent's arm stays, or one of the children: a joint of two arms would be a path.
             for new in self.halve(joint, &arms[1..]) {
-                match self.joints[new as usize].arms.len() <= MOST_PAIRED {
+                match self.joints[new as usize].arms.len() <= MAX_NEIGHBORS {
                     true => touched.extend([new]),
                     false => large.push(new),
                 }

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::ForkChoice;
 use super::arrange::{Group, arrange};
 use super::cone::distance;
 use super::joint::{JointShape, Neighbor};
@@ -11,7 +10,8 @@ use super::planner::{End, Planner, Start, Way};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
 use super::zone::{Beginning, Branch, NoZone, Zone};
-use crate::tracing::{Children, NONE, Skeleton};
+use super::{ForkChoice, MAX_NEIGHBORS};
+use crate::tracing::{NONE, Skeleton};
 
 /// Free way between the inset's corners and the branch's next ring, in radii.
 pub(super) const AHEAD: f64 = 0.35;
@@ -21,8 +21,6 @@ pub(super) const CLEAR: f64 = 1.05;
 const ACROSS: f64 = 0.92;
 /// Points of a branch that are looked at to find its way out.
 const MOST_LOOKED_AT: usize = 40;
-/// A fork of more neighbors is split into several joints, none of which reaches far.
-const MOST_NEIGHBORS: usize = 6;
 
 /// Branches of a path that are worth a thread.
 const LEAST_BRANCHES: usize = 8;
@@ -241,9 +239,9 @@ impl Planner<'_> {
 
     /// How far a joint reaches towards a neighbor, with room for all.
     fn joint_reach(&mut self, fork: u32, neighbor: u32) -> f64 {
-        let (base, children) = (self.base, self.children);
+        let base = self.base;
         let reaches = self.joint_reaches.entry(fork);
-        let reaches = reaches.or_insert_with(|| joint_reaches(base, children, fork));
+        let reaches = reaches.or_insert_with(|| joint_reaches(base, fork));
         // The node before a joint on its path may lie beyond an inset: then the parent stands for it.
         let reach = reaches.iter().find(|(node, _)| *node == neighbor);
         reach.or(reaches.first()).map_or(0.0, |(_, reach)| *reach)
@@ -251,10 +249,11 @@ impl Planner<'_> {
 }
 
 /// How far a joint reaches towards each of its neighbors.
-fn joint_reaches(base: &Skeleton, children: &Children, fork: u32) -> Vec<(u32, f64)> {
+fn joint_reaches(base: &Skeleton, fork: u32) -> Vec<(u32, f64)> {
     let around = base.neighbors(fork);
     let at = base.node(fork);
-    if children.of(fork).len() >= MOST_NEIGHBORS {
+    // It will be several joints, none of which reaches far.
+    if around.len() > MAX_NEIGHBORS {
         let reach = 2.0 * at.radius;
         return around.into_iter().map(|node| (node, reach)).collect();
     }

@@ -91,6 +91,10 @@ impl ForkChoice {
     }
 }
 
+/// A fork of more neighbors is split over several joints: one has so many directions in a plane that are far enough
+/// apart, and each is judged by the patches of all.
+pub(crate) const MAX_NEIGHBORS: usize = 6;
+
 /// Whether a path may go straight from one node of the tracing to another below it.
 pub(crate) type MayJoin<'a> = dyn Fn(u32, u32) -> bool + Sync + 'a;
 

@@ -1,13 +1,12 @@
 //! Which child of a fork continues the trunk.
 
+use super::MAX_NEIGHBORS;
 use super::planner::Planner;
 
 /// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
 const STRAIGHTNESS: f64 = 0.5;
 /// A branch may be this much thicker than its trunk.
 const MOST_THICK: f64 = 1.05;
-/// A fork of more children becomes joints: branches of one point need a side of the trunk each.
-const MOST_CHILDREN: usize = 4;
 /// A branch that forks again within this many of its radii is not clear of its trunk by then.
 const SOON: f64 = 4.0;
 
@@ -91,7 +90,7 @@ impl Planner<'_> {
         } else {
             here
         };
-        if self.children.of(fork).len() > MOST_CHILDREN {
+        if self.children.of(fork).len() >= MAX_NEIGHBORS {
             return false;
         }
         let mut others = self.children.of(fork).iter().filter(|&&c| c != main);

@@ -20,49 +20,6 @@ fn crossings(mesh: &CoarseMesh) -> usize {
     self_intersections(&positions, &surface.faces).len()
 }
 
-/// A trunk along x that forks at the origin, and a neurite that runs through the fork: through `middle`, with
-/// points `step` apart.
-fn run_through(branch: [f32; 2], branch_radius: f32, middle: Vec3, step: Vec3) -> Morphology {
-    let mut m = Morphology::default();
-    let along =
-        |range: std::ops::RangeInclusive<i32>, step: Vec3| range.map(move |i| step * i as f32);
-    let of_radius = |radius: f32| move |position: Vec3| (position, radius);
-    let x = vec3(3.0, 0.0, 0.0);
-    let [cos, sin] = branch;
-    add(
-        &mut m,
-        Attachment::Free,
-        along(-4..=0, x).map(of_radius(1.0)),
-    );
-    let trunk = Attachment::Section(SectionId(0));
-    add(&mut m, trunk, along(1..=4, x).map(of_radius(1.0)));
-    let branch = along(1..=4, 3.0 * vec3(cos, sin, 0.0));
-    add(&mut m, trunk, branch.map(of_radius(branch_radius)));
-    let other = along(-4..=4, step).map(|way| middle + way);
-    add(&mut m, Attachment::Free, other.map(of_radius(0.8)));
-    m
-}
-
-#[neurotess_testing::test]
-fn a_fork_takes_the_shape_that_others_cross_least() {
-    let beside = run_through(
-        [0.0, 1.0],
-        0.8,
-        vec3(0.85, 1.23, 0.27),
-        vec3(2.57, 1.5, 0.34),
-    );
-    let pairs = crossings(&meshed(&beside));
-    assert!(pairs <= 98, "{pairs}"); // with the first sound shape: 115
-    let across = run_through(
-        [0.766, 0.643],
-        0.6,
-        vec3(1.54, 2.79, -0.65),
-        vec3(-1.09, 2.68, 0.79),
-    );
-    let pairs = crossings(&meshed(&across));
-    assert!(pairs <= 47, "{pairs}"); // with the first sound shape: 60
-}
-
 /// A thin child goes straight on, and one twice as thick turns back: too thick to leave the thin one.
 #[neurotess_testing::test]
 fn a_thick_child_that_turns_back_is_the_trunk() {

@@ -99,15 +99,6 @@ impl RefinedPatches {
         Some(self.faults_of_pairs(near))
     }
 
-    /// Pairs of facets that cross, one of the first `first` patches and one of the others.
-    pub(crate) fn crossings_across(&self, first: u32) -> usize {
-        let near = self.near_pairs(usize::MAX).unwrap_or_default();
-        let across = near
-            .into_iter()
-            .filter(|[a, b]| (*a < first) != (*b < first));
-        across.map(|patches| self.crossings(patches)).sum()
-    }
-
     fn faults_of_pairs(&self, near: Vec<[u32; 2]>) -> Vec<Fault> {
         let mut faults = self.crossings_of(near);
         faults.extend(self.folds());
