@@ -70,6 +70,9 @@ pub struct TracingPoint {
     /// the trunk, as the last leg of their cubics; negative where its path ends at the inset instead of beginning
     /// there, so that its tangent points into the trunk. 0 for all others.
     pub collar: f32,
+    /// Of an ordinary point: change of the radius along the path (µm per µm, −1 to 1). The normals of its ring
+    /// lean by it, and the radius has this slope there on both sides. 0 for all others.
+    pub taper: f32,
     /// SWC type of the section.
     pub kind: SwcType,
     /// The sample that it was traced as.

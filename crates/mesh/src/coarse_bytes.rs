@@ -1,7 +1,7 @@
 //! A coarse mesh as bytes and back, for caches: the same bits, and every index in range.
 //!
 //! Corners, numbers of tracing points, samples and sections mostly count up, so they are stored as differences;
-//! coordinates as they are. A tracing point with its ring takes some 160 bytes.
+//! coordinates as they are. A tracing point with its ring takes some 165 bytes.
 
 use crate::bytes::{ByteReader, ByteWriter, BytesError};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
 /// Fewest bytes of a vertex: position and normal, and a difference.
 const VERTEX: usize = 25;
 /// Fewest bytes of a tracing point.
-const TRACING: usize = 36;
+const TRACING: usize = 40;
 /// Fewest bytes of a patch: its kind and four differences.
 const PATCH: usize = 5;
 
@@ -87,6 +87,7 @@ fn write_point(point: &TracingPoint, before: &TracingPoint, to: &mut ByteWriter)
         tangent,
         role,
         collar,
+        taper,
         kind,
         sample,
         section,
@@ -95,6 +96,7 @@ fn write_point(point: &TracingPoint, before: &TracingPoint, to: &mut ByteWriter)
     to.f32(radius);
     to.vec3(tangent);
     to.f32(collar);
+    to.f32(taper);
     to.raw(&[role as u8]);
     to.difference(kind.0.into(), before.kind.0.into());
     to.difference(sample.0.into(), before.sample.0.into());
@@ -111,6 +113,7 @@ fn read_point(
         radius: from.f32()?,
         tangent: from.vec3()?,
         collar: from.f32()?,
+        taper: from.f32()?,
         role: match from.raw(1)?[0] {
             0 => Role::Ordinary,
             1 => Role::End,
@@ -170,6 +173,7 @@ mod tests {
             tangent: Vec3::Y,
             role,
             collar: i as f32 / 3.0,
+            taper: -0.1 * i as f32,
             kind: SwcType(i - 2),
             sample: SampleId(i32::MAX - i),
             section: SectionNumber(i32::MIN + 7 * i),

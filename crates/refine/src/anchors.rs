@@ -6,7 +6,8 @@ use glam::Vec3;
 use neurotess_mesh::{Role, TracingPoint};
 
 use crate::decode::{
-    ANCHOR_COLLAR_SHIFT, collar, octahedral, signed16, to_collar, to_octahedral, to_signed16,
+    ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, collar, octahedral, signed16, taper, to_collar,
+    to_octahedral, to_signed16, to_taper,
 };
 use crate::packer::Packer;
 
@@ -76,7 +77,9 @@ impl Anchors {
             packed.extend([
                 point.radius.to_bits(),
                 x | (y << 16),
-                point.role as u32 | (to_collar(point.collar) << ANCHOR_COLLAR_SHIFT),
+                point.role as u32
+                    | (to_taper(point.taper) << ANCHOR_TAPER_SHIFT)
+                    | (to_collar(point.collar) << ANCHOR_COLLAR_SHIFT),
                 packer.color_key(tracing),
             ]);
             if point.role != Role::Soma {
@@ -85,6 +88,7 @@ impl Anchors {
                     TracingPoint {
                         tangent: octahedral(x, y, 65535.0),
                         collar: collar(to_collar(point.collar)),
+                        taper: taper(to_taper(point.taper)),
                         ..*point
                     },
                 ));

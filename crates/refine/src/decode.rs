@@ -2,11 +2,12 @@
 //!
 //! | what | bytes | holds |
 //! | --- | --- | --- |
-//! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5), level (6), color key (10), kind and run (3) |
+//! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5 of 9), level (6), color key (10), kind and run (3) |
+//! | taper | ½ | the lowest 4 bits of a point's taper |
 //! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, collar (17), whether it is an inset |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
-//! | anchor | 32 | center, reach, radius, tangent, role and collar, color key |
+//! | anchor | 32 | center, reach, radius, tangent, role, taper and collar, color key |
 //! | patch of a soma | 6 | four explicit vertices |
 //! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
@@ -22,7 +23,8 @@
 //! rings, four each.
 //!
 //! Errors: at most 0.2 % of the radius for the center (a ring whose sphere is too large for that becomes
-//! explicit), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the turn; for explicit vertices
+//! explicit), 0.02 % for the radius, 0.4 % for the tangent, 0.4 % for the turn,
+//! 2⁻⁹ for the square root of the taper; for explicit vertices
 //! 2⁻¹⁶ of their distance from the anchor. All together less than a hundredth of the radius:
 //! `resident_form_is_within_a_hundredth_of_the_radius`.
 
@@ -51,12 +53,18 @@ pub(crate) const SHAPED_OPEN_SHIFT: u32 = 28;
 pub(crate) const SHAPED_INSET: u32 = 1 << 27;
 /// Bit of a collar that is negative.
 pub(crate) const COLLAR_AGAINST: u32 = 1 << 16;
-/// First bit of an anchor's collar, after its role.
+/// First bit of an anchor's taper, after its role.
+pub(crate) const ANCHOR_TAPER_SHIFT: u32 = 3;
+/// First bit of an anchor's collar, after its taper.
 pub(crate) const ANCHOR_COLLAR_SHIFT: u32 = 15;
 /// Greatest height of a shaped ring's corner over its center, in radii.
 pub(crate) const MOST_HEIGHT: f32 = 4.0;
 /// Bit of a point where the tube narrows.
 pub(crate) const POINT_NARROWS: u32 = 1 << 29;
+/// Bit of a taper that is negative.
+pub(crate) const TAPER_NARROWS: u32 = 1 << 8;
+/// Number of bits of a taper that are stored after the points, and not with them.
+pub(crate) const TAPER_LOW_BITS: u32 = 4;
 /// Bit of a point that has lateral patches to the next.
 pub(crate) const POINT_GOES_ON: u32 = 1 << 28;
 /// Number of steps of a coordinate from one side of the sphere's bounding box to the other.
@@ -158,16 +166,22 @@ pub(crate) fn collar(code: u32) -> f32 {
     }
 }
 
-/// A taper as 4 bits and a sign. The bits are those of its square root, so that small tapers are
+/// A taper as 8 bits and a sign. The bits are those of its square root, so that small tapers are
 /// accurate.
-pub(crate) fn to_slope(slope: f32) -> (u32, bool) {
-    let root = slope.abs().min(1.0).sqrt();
-    ((root * 15.0 + 0.5) as u32, slope < 0.0)
+pub(crate) fn to_taper(taper: f32) -> u32 {
+    let root = taper.abs().min(1.0).sqrt();
+    let narrows = if taper < 0.0 { TAPER_NARROWS } else { 0 };
+    (root * 255.0 + 0.5) as u32 | narrows
 }
 
-pub(crate) fn slope(code: u32, narrows: bool) -> f32 {
-    let root = code as f32 / 15.0;
-    if narrows { -(root * root) } else { root * root }
+pub(crate) fn taper(code: u32) -> f32 {
+    let root = (code & 0xff) as f32 / 255.0;
+    let square = root * root;
+    if code & TAPER_NARROWS == 0 {
+        square
+    } else {
+        -square
+    }
 }
 
 /// A position from its steps in a sphere's bounding box.
@@ -200,7 +214,7 @@ pub(crate) struct ImplicitRing {
     pub(crate) radius: u32,
     pub(crate) tangent: (u32, u32),
     pub(crate) turn: u32,
-    pub(crate) slope: (u32, bool),
+    pub(crate) taper: u32,
     pub(crate) role: Role,
 }
 
@@ -213,8 +227,7 @@ impl ImplicitRing {
     pub(crate) fn corner(&self, center: Vec3, k: u32) -> (Vec3, Vec3) {
         let tangent = self.tangent();
         let direction = ring_direction(tangent, self.turn, k);
-        let slope = slope(self.slope.0, self.slope.1);
-        let normal = normalize_or(direction - tangent * slope, direction);
+        let normal = normalize_or(direction - tangent * taper(self.taper), direction);
         (center + direction * radius(self.radius), normal)
     }
 }

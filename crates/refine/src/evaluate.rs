@@ -8,7 +8,8 @@
 //! `v(x, y) = c(y) + Σ wᵢ dᵢ / |Σ wᵢ n̂ᵢ|`,
 //!
 //! which is the same for circles and makes a quarter of an ellipse where a joint's vertices lie
-//! at different distances. Somata are bilinearly blended Coons patches over four cubics made from
+//! at different distances. Along the tube the second term is multiplied so that the radius is not linear but a
+//! monotone cubic (`profile.rs`): so its slope does not jump at tracing points. Somata are bilinearly blended Coons patches over four cubics made from
 //! the corners' positions and normals (Vlachos et al., Curved PN triangles, 2001, for the cubics).
 //!
 //! Around an inset, where a branch leaves a quad of its trunk, lie four lofts: at each x a cubic that
@@ -18,17 +19,23 @@
 //! **Conformity.** A point of an edge depends on the edge alone: two corners and their tracing
 //! points, always taken in the edge's own direction. So faces that share an edge agree to the bit.
 
+mod center_line;
+mod corner;
 mod edges;
+mod profile;
 
 use glam::Vec3;
 use neurotess_mesh::PatchKind;
 
 use crate::{Caps, Path, RefineOptions};
+pub(crate) use center_line::{CenterLine, MOST_SWAY, hermite_tangents};
+pub(crate) use corner::{Corner, Jet};
 pub(crate) use edges::{
-    CenterLine, Corner, EdgeCurve, EdgeKind, EdgeNormals, Jet, MOST_OFFSET, MOST_SWAY, SOMA_FILLET,
-    edge, hermite_tangents, loft_controls, soma_controls,
+    EdgeCurve, EdgeKind, EdgeNormals, MOST_OFFSET, SOMA_FILLET, edge, loft_controls, soma_controls,
 };
 use edges::{OverLength, cubic, first_leg, longer, mix, most_squared};
+use profile::Share;
+pub(crate) use profile::{Profile, STEEPEST_PROFILE};
 
 /// A patch ready to be evaluated inside.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +63,7 @@ pub(crate) struct PatchRows<'s> {
 #[derive(Clone, Copy, Debug)]
 struct Tube {
     line: CenterLine,
+    profile: Profile,
     offset_y: [Vec3; 2],
     radial_y: [Vec3; 2],
     /// The longest offset of the corners of each ring.
@@ -70,6 +78,7 @@ struct TubeRow {
     offsets: [Vec3; 2],
     radials: [Vec3; 2],
     most_squared: f32,
+    share: Share,
 }
 
 impl<'s> PatchRows<'s> {
@@ -111,11 +120,25 @@ impl PatchRow<'_> {
     }
 }
 
+impl PatchRow<'_> {
+    /// The radius of the tube (µm) here; linear between corners of other patches.
+    pub(crate) fn radius(&self, x: f32) -> f32 {
+        if let Some(tube) = &self.tube {
+            return tube.tube.profile.radius(self.y);
+        }
+        let radii = self.shape.corners.map(|corner| corner.radius);
+        (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - self.y)
+            + (radii[3] * (1.0 - x) + radii[2] * x) * self.y
+    }
+}
+
 impl Tube {
     fn new(shape: &PatchShape, path: Path) -> Self {
         let [a, b, c, d] = &shape.corners;
+        let line = CenterLine::new(a, d, path);
         Self {
-            line: CenterLine::new(a, d, path),
+            line,
+            profile: Profile::new(a, d, &line),
             offset_y: [d.offset - a.offset, c.offset - b.offset],
             radial_y: [d.radial - a.radial, c.radial - b.radial],
             longest: [longer(a.offset, b.offset), longer(d.offset, c.offset)],
@@ -132,6 +155,7 @@ impl TubeRow {
             offsets: [mix(a.offset, d.offset, y), mix(b.offset, c.offset, y)],
             radials: [mix(a.radial, d.radial, y), mix(b.radial, c.radial, y)],
             most_squared: most_squared(tube.longest[0], tube.longest[1], y),
+            share: tube.profile.share(y),
         }
     }
 
@@ -143,9 +167,9 @@ impl TubeRow {
         let over = OverLength::of(radial);
         let most = self.most_squared;
         let around = over.jet(offset, change(self.offsets), change(self.radials));
-        let around = around.within(most);
+        let around = around.within(most).around(self.share);
         let along = over.jet(offset, blend(self.tube.offset_y), blend(self.tube.radial_y));
-        let along = along.within(most);
+        let along = along.within(most).along(self.share);
         let normal = around
             .derivative
             .cross(self.center.derivative + along.derivative)

@@ -3,6 +3,8 @@
 // Called by the shaders that draw and by the one that expands patches for the parity test.
 // Rust twin: evaluate.rs, with the theory. Constants are defined in gpu.rs.
 
+#import profile.wgsl
+
 struct Jet {
     position: vec3<f32>,
     derivative: vec3<f32>,
@@ -19,6 +21,8 @@ struct Corner {
     role: u32,
     // Of an inset's corner: length of a loft's last leg along the tangent.
     collar: f32,
+    // Of an ordinary tracing point or an end: change of the radius along the path.
+    taper: f32,
 }
 
 fn normalize_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
@@ -97,6 +101,21 @@ fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
     return a * (1.0 - t) + b * t;
 }
 
+// The radius along the tube between the rings of two corners.
+fn profile_between(a: Corner, b: Corner, path: u32) -> Profile {
+    var speeds = vec2(length(b.center - a.center));
+    if (path != PATH_LINEAR) {
+        speeds = vec2(length(hermite_tangent(a, a, b)), length(hermite_tangent(b, a, b)));
+    }
+    let own = vec2(has_taper(a), has_taper(b));
+    return profile_of(a.radius, b.radius, vec2(a.taper, b.taper) * speeds, own);
+}
+
+// Whether both tubes beside a corner's ring have the slope of its taper.
+fn has_taper(corner: Corner) -> bool {
+    return corner.role == ROLE_ORDINARY || corner.role == ROLE_END;
+}
+
 // A point of the tube between corners a, b of one ring and d, c of the next, with its derivatives.
 struct TubePoint {
     position: vec3<f32>,
@@ -104,8 +123,9 @@ struct TubePoint {
     by_y: vec3<f32>,
     // Direction away from the center line, not of unit length.
     radial: vec3<f32>,
-    // Point of the center line.
+    // Point of the center line, and the radius there.
     axis: vec3<f32>,
+    radius: f32,
 }
 
 // The same expression for tubes and their edges, so that different shaders compute the same bits: a
@@ -128,12 +148,15 @@ fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: 
     let most = reach * reach;
     let around = within(over_length(offset, offset_x, radial, radial_x), most);
     let along = within(over_length(offset, offset_y, radial, radial_y), most);
+    let profile = profile_between(a, d, path);
+    let share = profile_share(profile, y);
     return TubePoint(
-        center.position + around.position,
-        around.derivative,
-        center.derivative + along.derivative,
+        center.position + around.position * share.x,
+        around.derivative * share.x,
+        center.derivative + along.derivative * share.x + along.position * share.y,
         radial,
         center.position,
+        profile_radius(profile, y),
     );
 }
 

@@ -10,11 +10,12 @@ use neurotess_mesh::{PatchKind, Role};
 
 use crate::bounding_sphere::{SOMA_REACH, TUBE_REACH};
 use crate::decode::{
-    ANCHOR_COLLAR_SHIFT, COLLAR_AGAINST, EXPLICIT, MOST_HEIGHT, POINT_END, POINT_EXPLICIT,
-    POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_SHAPED, POINTS_OF_SPHERE, POSITION_STEPS,
-    RADIUS_BASE, SHAPED_INSET, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, SHAPED_U32S, SPHERE_U32S,
+    ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, COLLAR_AGAINST, EXPLICIT, MOST_HEIGHT, POINT_END,
+    POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_SHAPED, POINTS_OF_SPHERE,
+    POSITION_STEPS, RADIUS_BASE, SHAPED_INSET, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, SHAPED_U32S,
+    SPHERE_U32S, TAPER_LOW_BITS, TAPER_NARROWS,
 };
-use crate::evaluate::{MOST_OFFSET, MOST_SWAY, SOMA_FILLET};
+use crate::evaluate::{MOST_OFFSET, MOST_SWAY, SOMA_FILLET, STEEPEST_PROFILE};
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
 use crate::wgsl::{Constants, WgslFile};
 use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
@@ -31,6 +32,8 @@ macro_rules! file {
 
 /// Twin of `evaluate.rs`.
 pub const EVALUATE: WgslFile = file!("evaluate.wgsl");
+/// Twin of `evaluate/profile.rs`.
+pub const PROFILE: WgslFile = file!("profile.wgsl");
 /// Twin of `level.rs`.
 pub const LEVEL: WgslFile = file!("level.wgsl");
 /// The layout of a packed mesh, twin of `decode.rs`; binds group 0, binding 0.
@@ -42,7 +45,7 @@ pub const PLAN: WgslFile = file!("plan.wgsl");
 pub const CORNER_SOURCE: WgslFile = file!("corner_source.wgsl");
 
 /// All files, for imports.
-pub const FILES: [WgslFile; 5] = [EVALUATE, LEVEL, TEMPLATE, PLAN, CORNER_SOURCE];
+pub const FILES: [WgslFile; 6] = [EVALUATE, PROFILE, LEVEL, TEMPLATE, PLAN, CORNER_SOURCE];
 
 const EDGE_RING: u32 = 0;
 const EDGE_ALONG: u32 = 1;
@@ -79,6 +82,9 @@ pub fn constants() -> Constants {
     whole("SHAPED_OPEN_SHIFT", SHAPED_OPEN_SHIFT);
     whole("SHAPED_INSET", SHAPED_INSET);
     whole("COLLAR_AGAINST", COLLAR_AGAINST);
+    whole("TAPER_LOW_BITS", TAPER_LOW_BITS);
+    whole("TAPER_NARROWS", TAPER_NARROWS);
+    whole("ANCHOR_TAPER_SHIFT", ANCHOR_TAPER_SHIFT);
     whole("ANCHOR_COLLAR_SHIFT", ANCHOR_COLLAR_SHIFT);
     whole("POINT_NARROWS", POINT_NARROWS);
     whole("POINT_GOES_ON", POINT_GOES_ON);
@@ -107,6 +113,7 @@ pub fn constants() -> Constants {
     real("MOST_OFFSET", MOST_OFFSET);
     real("MOST_SWAY", MOST_SWAY);
     real("SOMA_FILLET", SOMA_FILLET);
+    real("STEEPEST_PROFILE", STEEPEST_PROFILE);
     real("SHARE", SHARE);
     real("SLACK", SLACK);
     real("STEEPEST", STEEPEST);

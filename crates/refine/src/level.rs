@@ -6,7 +6,8 @@
 use glam::Vec3;
 
 use crate::evaluate::{
-    Corner, EdgeCurve, EdgeKind, hermite_tangents, loft_controls, soma_controls,
+    CenterLine, Corner, EdgeCurve, EdgeKind, Profile, hermite_tangents, loft_controls,
+    soma_controls,
 };
 use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
@@ -136,7 +137,7 @@ fn by_error(error: f32, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u
 pub(crate) fn bend(path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> f32 {
     match kind {
         EdgeKind::Ring => turning(a, b),
-        EdgeKind::Along => center_bend(a, b, path) + turning(a, b),
+        EdgeKind::Along => center_bend(a, b, path) + turning(a, b) + widening(a, b, path),
         EdgeKind::Soma => cubic_bend(soma_controls(a, b)),
         EdgeKind::Loft => cubic_bend(loft_controls(a, b)),
     }
@@ -173,14 +174,26 @@ fn round_up(cuts: f32) -> u32 {
 /// normalized mixture of two directions θ apart turns by at most 2 tan(θ/2) per unit.
 fn turning(a: &Corner, b: &Corner) -> f32 {
     let (ra, rb) = (a.offset.length(), b.offset.length());
+    let speed = speed(a, b);
+    ra.max(rb) * speed * speed + 2.0 * (ra - rb).abs() * speed
+}
+
+/// Greatest speed (radians) of the normalized mixture of two corners' radials.
+fn speed(a: &Corner, b: &Corner) -> f32 {
     // tan(θ/2) of unit vectors without the arc cosine, which is inaccurate on GPUs.
     let (apart, together) = (
         (a.radial - b.radial).length(),
         (a.radial + b.radial).length(),
     );
-    let half = (apart / together.max(1e-6)).min(STEEPEST);
-    let speed = 2.0 * half;
-    ra.max(rb) * speed * speed + 2.0 * (ra - rb).abs() * speed
+    2.0 * (apart / together.max(1e-6)).min(STEEPEST)
+}
+
+/// Bound of what the second derivative of the offset is more where the radius is no straight line.
+fn widening(a: &Corner, b: &Corner, path: Path) -> f32 {
+    let profile = Profile::new(a, b, &CenterLine::new(a, b, path));
+    let radii = |k: &Corner| k.offset.length() / k.radius.max(f32::MIN_POSITIVE);
+    let steeper = profile.steepest() - (b.radius - a.radius).abs();
+    radii(a).max(radii(b)) * (profile.bend() + 2.0 * steeper * speed(a, b))
 }
 
 fn center_bend(a: &Corner, b: &Corner, path: Path) -> f32 {

@@ -124,7 +124,7 @@ fn by_error(error: f32, path: u32, kind: u32, a: Corner, b: Corner) -> u32 {
     if (kind == EDGE_RING) {
         bend = turning(a, b);
     } else if (kind == EDGE_ALONG) {
-        bend = center_bend(a, b, path) + turning(a, b);
+        bend = center_bend(a, b, path) + turning(a, b) + widening(a, b, path);
     } else {
         var p = soma_controls(a, b);
         if (kind == EDGE_LOFT) {
@@ -169,11 +169,23 @@ fn round_up(cuts: f32) -> u32 {
 fn turning(a: Corner, b: Corner) -> f32 {
     let ra = length(a.offset);
     let rb = length(b.offset);
+    let speed = turning_speed(a, b);
+    return max(ra, rb) * speed * speed + 2.0 * abs(ra - rb) * speed;
+}
+
+// Greatest speed (radians) of the normalized mixture of two corners' radials.
+fn turning_speed(a: Corner, b: Corner) -> f32 {
     let apart = length(a.radial - b.radial);
     let together = length(a.radial + b.radial);
-    let half = min(apart / max(together, 1e-6), STEEPEST);
-    let speed = 2.0 * half;
-    return max(ra, rb) * speed * speed + 2.0 * abs(ra - rb) * speed;
+    return 2.0 * min(apart / max(together, 1e-6), STEEPEST);
+}
+
+// Bound of what the second derivative of the offset is more where the radius is no straight line.
+fn widening(a: Corner, b: Corner, path: u32) -> f32 {
+    let profile = profile_between(a, b, path);
+    let steeper = profile_steepest(profile) - abs(profile.way);
+    let radii = max(length(a.offset) / max(a.radius, 1e-37), length(b.offset) / max(b.radius, 1e-37));
+    return radii * (profile_bend(profile) + 2.0 * steeper * turning_speed(a, b));
 }
 
 fn center_bend(a: Corner, b: Corner, path: u32) -> f32 {

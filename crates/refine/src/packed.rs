@@ -9,8 +9,8 @@ use crate::anchors::Anchors;
 use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{
     POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_ORDINARY,
-    POINT_SHAPED, POINTS_OF_SPHERE, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, collar, from_sphere,
-    radius, to_sphere,
+    POINT_SHAPED, POINTS_OF_SPHERE, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, TAPER_LOW_BITS,
+    TAPER_NARROWS, collar, from_sphere, radius, taper, to_sphere,
 };
 use crate::packer::{Contents, Packer, cap_ring, widened};
 use crate::part::{MOST_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
@@ -60,7 +60,7 @@ impl Packer<'_> {
             }));
     }
 
-    /// Writes points and bounding spheres. Returns the point of every implicit ring, by the ring's
+    /// Writes points, the rest of their tapers and bounding spheres. Returns the point of every implicit ring, by the ring's
     /// first vertex.
     fn write_points(
         &self,
@@ -69,16 +69,17 @@ impl Packer<'_> {
         part: &mut MeshPart,
     ) -> BTreeMap<u32, u32> {
         let mut point_of = BTreeMap::new();
+        let mut tapers = Vec::new();
         for (i, slot) in contents.slots.iter().enumerate() {
             let form = slot.ring.and_then(|ring| Some((ring[0], self.form(ring)?)));
-            let point = match form {
+            let point = match &form {
                 Some((first, form)) => {
                     let sphere = part.spheres[i / POINTS_OF_SPHERE];
-                    let [x, y, mut z, w] = self.point_bits(part, first, &form, sphere, color_keys);
-                    let (kind, named) = match &form {
-                        RingForm::Shaped(_) => (POINT_SHAPED, contents.shaped_index(first)),
+                    let [x, y, mut z, w] = self.point_bits(part, *first, form, sphere, color_keys);
+                    let (kind, named) = match form {
+                        RingForm::Shaped(_) => (POINT_SHAPED, contents.shaped_index(*first)),
                         RingForm::Implicit(circle) => {
-                            point_of.insert(first, i as u32);
+                            point_of.insert(*first, i as u32);
                             let end = circle.role == Role::End;
                             let turn = circle.turn | ((self.level(circle.tracing) - 1) << 10);
                             (if end { POINT_END } else { POINT_ORDINARY }, turn)
@@ -95,11 +96,19 @@ impl Packer<'_> {
                     [a | (b << 16), kind | slot.open_sides(), c | (d << 16), 0]
                 }
             };
+            let low = form.map_or(0, |(_, form)| form.circle().taper);
+            tapers.push(low & ((1 << TAPER_LOW_BITS) - 1));
             let goes_on = if slot.goes_on() { POINT_GOES_ON } else { 0 };
             let [x, y, z, w] = point;
             part.packed.extend([x, y | goes_on, z, w]);
         }
         part.layout.point_count = contents.slots.len() as u32;
+        let together = |eight: &[u32]| {
+            let shifted = (0..).step_by(TAPER_LOW_BITS as usize).zip(eight);
+            shifted.fold(0, |bits, (shift, low)| bits | (low << shift))
+        };
+        part.packed
+            .extend(tapers.chunks((32 / TAPER_LOW_BITS) as usize).map(together));
         part.layout.spheres = part.packed.len() as u32;
         for &(center, radius) in &part.spheres {
             let sphere = center.extend(radius).to_array().map(f32::to_bits);
@@ -198,19 +207,24 @@ impl Packer<'_> {
             radius: radius(circle.radius),
             tangent: circle.tangent(),
             collar,
+            taper: taper(circle.taper),
             ..*point
         };
         part.tracing.push((circle.tracing, rounded));
         let [x, y, z] = place;
-        let (slope, narrows) = circle.slope;
-        let narrows = if narrows { POINT_NARROWS } else { 0 };
+        let narrows = if circle.taper & TAPER_NARROWS == 0 {
+            0
+        } else {
+            POINT_NARROWS
+        };
+        let high = (circle.taper & !TAPER_NARROWS) >> TAPER_LOW_BITS;
         [
             x | (y << 20),
             (y >> 12) | (z << 8) | narrows,
             circle.radius,
             circle.tangent.0
                 | (circle.tangent.1 << 9)
-                | (slope << 18)
+                | (high << 18)
                 | (color_keys.index_of(self.color_key(circle.tracing)) << 22),
         ]
     }

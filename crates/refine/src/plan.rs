@@ -201,8 +201,10 @@ pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
         .iter()
         .map(|edge| {
             let [a, b] = [edge.from, edge.to].map(|v| Corner::new(mesh, v));
-            // A bound for both paths, since the straight one bends less.
-            let bend = bend(Path::Hermite, edge.kind, &a, &b);
+            // A bound for both paths: on a straight one the radius may bend more.
+            let [curved, straight] =
+                [Path::Hermite, Path::Linear].map(|path| bend(path, edge.kind, &a, &b));
+            let bend = if straight > curved { straight } else { curved };
             if bend.is_nan() { f32::INFINITY } else { bend }
         })
         .collect();

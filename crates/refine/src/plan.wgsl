@@ -174,11 +174,11 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
         let axis = axis_of(a) * ends.x + axis_of(b) * ends.y;
         return SurfacePoint(jet.position, normal, axis, dot(vec2(width_of(a), width_of(b)), ends), nearest);
     }
-    let radius = a.radius * (1.0 - t) + b.radius * t;
     if (s.kind == EDGE_RING) {
-        return SurfacePoint(jet.position, normal, a.center, radius, nearest);
+        return SurfacePoint(jet.position, normal, a.center, a.radius, nearest);
     }
     let axis = center_line(a, b, options.path, t).position;
+    let radius = profile_radius(profile_between(a, b, options.path), t);
     return SurfacePoint(jet.position, normal, axis, radius, nearest);
 }
 
@@ -220,7 +220,7 @@ fn inner_vertex(
         nearest = first_of_soma(shape, p, nearest);
         return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
     }
-    let radius = (width_of(shape.a) * (1.0 - x) + width_of(shape.b) * x) * (1.0 - y)
+    var radius = (width_of(shape.a) * (1.0 - x) + width_of(shape.b) * x) * (1.0 - y)
         + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
     var axis = shape.a.center;
     if (p.kind == PATCH_LOFT) {
@@ -229,6 +229,7 @@ fn inner_vertex(
     }
     if (p.kind == PATCH_LATERAL) {
         axis = center_line(shape.a, shape.d, options.path, y).position;
+        radius = profile_radius(profile_between(shape.a, shape.d, options.path), y);
     }
     return SurfacePoint(inside.position, inside.normal, axis, radius, nearest);
 }

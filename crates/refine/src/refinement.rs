@@ -261,7 +261,7 @@ impl<'r> InnerEdge<'r> {
         let jet = self.curve.at(t);
         let normal = self.normals.at(jet.derivative, t);
         let [ta, tb] = self.tracing;
-        let radius = ta.radius * (1.0 - t) + tb.radius * t;
+        let radius = self.curve.radius(t);
         let nearest = if t < 0.5 { ta } else { tb };
         attributed(jet.position, normal, self.soma.unwrap_or(nearest), radius)
     }
@@ -311,9 +311,7 @@ impl<'r> InnerVertices<'r> {
         );
         let (position, normal) = row.point(x);
         let nearest = usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5));
-        let radii = self.tracing.map(|t| t.radius);
-        let radius = (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - y)
-            + (radii[3] * (1.0 - x) + radii[2] * x) * y;
+        let radius = row.radius(x);
         let tracing = self.soma.unwrap_or(self.tracing[nearest]);
         attributed(position, normal, tracing, radius)
     }

@@ -5,7 +5,7 @@ use neurotess_mesh::{CoarseMesh, Role};
 
 use crate::decode::{
     ImplicitRing, MOST_HEIGHT, ShapedRing, to_collar, to_octahedral, to_radius, to_signed16,
-    to_slope, to_turn,
+    to_taper, to_turn,
 };
 
 /// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
@@ -84,16 +84,12 @@ fn circle(mesh: &CoarseMesh, ring: [u32; 4], roles: &[Role]) -> Option<ImplicitR
     if !ours || !roles.contains(&point.role) {
         return None;
     }
-    let offset = vertices[0].position - point.center;
-    let normal = vertices[0].normal;
-    let across = offset - point.tangent * offset.dot(point.tangent);
-    let out = across.normalize_or(normal);
     Some(ImplicitRing {
         tracing,
         radius: to_radius(point.radius)?,
         tangent: to_octahedral(point.tangent, 511.0),
         turn: 0,
-        slope: to_slope(-normal.dot(point.tangent) / normal.dot(out).max(1e-3)),
+        taper: to_taper(point.taper),
         role: point.role,
     })
 }

@@ -8,7 +8,7 @@
 
 // Where the arrays of a part begin in the packed buffer, in u32s.
 struct Base {
-    // Four u32s each; PATCHES_OF_POINT lateral patches from each to the next.
+    // Four u32s each; PATCHES_OF_POINT lateral patches from each to the next. After them TAPER_LOW_BITS of each.
     points: u32,
     point_count: u32,
     // A sphere for every POINTS_OF_SPHERE points, SPHERE_U32S each.
@@ -217,20 +217,23 @@ struct ImplicitRing {
     center: vec3<f32>,
     radius: f32,
     tangent: vec3<f32>,
-    slope: f32,
+    taper: f32,
     turn: u32,
     role: u32,
 }
 
-// The slope of the radius along the path at a point with an implicit ring, as five bits: the square
-// root of its absolute value, and whether the tube narrows.
-fn slope_bits(point_bits: vec4<u32>) -> u32 {
-    return ((point_bits.w >> 18u) & 0xfu) | select(0u, 16u, (point_bits.y & POINT_NARROWS) != 0u);
+// The change of the radius along the path at a point with an implicit or shaped ring, as nine bits: the
+// square root of its absolute value, and whether the tube narrows.
+fn taper_bits(base: Base, point: u32, point_bits: vec4<u32>) -> u32 {
+    let low_bits = packed[base.points + 4u * base.point_count + point / (32u / TAPER_LOW_BITS)];
+    let low = (low_bits >> (TAPER_LOW_BITS * (point % (32u / TAPER_LOW_BITS)))) & ((1u << TAPER_LOW_BITS) - 1u);
+    let high = ((point_bits.w >> 18u) & 0xfu) << TAPER_LOW_BITS;
+    return low | high | select(0u, TAPER_NARROWS, (point_bits.y & POINT_NARROWS) != 0u);
 }
 
-fn slope_of_bits(bits: u32) -> f32 {
-    let root = f32(bits & 0xfu) / 15.0;
-    return select(root * root, -(root * root), (bits & 16u) != 0u);
+fn taper_of_bits(bits: u32) -> f32 {
+    let root = f32(bits & 0xffu) / 255.0;
+    return select(root * root, -(root * root), (bits & TAPER_NARROWS) != 0u);
 }
 
 fn implicit_ring(base: Base, point: u32, point_bits: vec4<u32>) -> ImplicitRing {
@@ -238,7 +241,7 @@ fn implicit_ring(base: Base, point: u32, point_bits: vec4<u32>) -> ImplicitRing 
         point_center(base, point, point_bits),
         point_radius(point_bits),
         octahedral(point_bits.w & 0x1ffu, (point_bits.w >> 9u) & 0x1ffu, 511.0),
-        slope_of_bits(slope_bits(point_bits)),
+        taper_of_bits(taper_bits(base, point, point_bits)),
         (point_bits.z >> 16u) & 0x3ffu,
         select(ROLE_ORDINARY, ROLE_END, (point_bits.y >> POINT_KIND_SHIFT) == POINT_END),
     );
@@ -248,7 +251,7 @@ fn ring_corner(ring: ImplicitRing, k: u32) -> Corner {
     let direction = ring_direction(ring.tangent, ring.turn, k);
     let position = ring.center + direction * ring.radius;
     let offset = position - ring.center;
-    let normal = normalize_or(direction - ring.tangent * ring.slope, direction);
+    let normal = normalize_or(direction - ring.tangent * ring.taper, direction);
     return Corner(
         position,
         normal,
@@ -259,6 +262,7 @@ fn ring_corner(ring: ImplicitRing, k: u32) -> Corner {
         ring.radius,
         ring.role,
         0.0,
+        ring.taper,
     );
 }
 
@@ -303,6 +307,7 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
         ring.radius,
         role,
         collar_of_code((last >> 10u) & 0x1ffffu),
+        ring.taper,
     );
 }
 
@@ -348,12 +353,14 @@ fn explicit_corner(base: Base, vertex: u32) -> Corner {
         bitcast<f32>(packed[anchor + 4u]),
         role_of_bits(role),
         collar_of_bits(role),
+        taper_of_bits((role >> ANCHOR_TAPER_SHIFT) & 0x1ffu),
     );
 }
 
-// An anchor's role, and above it its collar: a sign and 16 bits as radii are, 0 for none.
+// An anchor's role, above it the nine bits of its taper, and above them its collar: a sign and 16 bits as
+// radii are, 0 for none.
 fn role_of_bits(bits: u32) -> u32 {
-    return bits & ((1u << ANCHOR_COLLAR_SHIFT) - 1u);
+    return bits & ((1u << ANCHOR_TAPER_SHIFT) - 1u);
 }
 
 fn collar_of_bits(bits: u32) -> f32 {

@@ -188,6 +188,7 @@ impl<'a> Assembly<'a> {
             tangent: ring.normal.as_vec3(),
             role,
             collar: 0.0,
+            taper: 0.0,
             kind,
             sample: sample_id(sample),
             section,

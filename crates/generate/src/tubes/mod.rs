@@ -7,7 +7,9 @@ mod normals;
 mod path;
 mod path_rings;
 mod soma;
+mod taper;
 mod twist;
 
 pub(crate) use assembly::{Somata, Tubes, tubes};
 pub(crate) use normals::average_normals;
+pub(crate) use taper::taper;

@@ -172,7 +172,9 @@ impl Assembly<'_> {
         let planned = &rings.path.rings[ring];
         let (tangent, frame) = (rings.tangents[ring], rings.frames[ring]);
         let tracing = self.tracing(planned, role);
-        self.mesh.tracing[tracing as usize].tangent = tangent.as_vec3();
+        let taper = rings.taper(ring);
+        let point = &mut self.mesh.tracing[tracing as usize];
+        (point.tangent, point.taper) = (tangent.as_vec3(), taper as f32);
         let side = tangent.cross(frame);
         let directions = if *angles == QUARTERS {
             // Nearly all rings, without sines.
@@ -182,14 +184,10 @@ impl Assembly<'_> {
         };
         let corners = directions
             .map(|direction| self.vertex(planned.center, direction * planned.radius, tracing));
-        let slope = match role {
-            Role::Ordinary => rings.taper(ring),
-            _ => 0.0,
-        };
         for vertex in corners {
             let vertex = &mut self.mesh.vertices[vertex as usize];
             vertex.normal =
-                (vertex.normal - (tangent * slope).as_vec3()).normalize_or(vertex.normal);
+                (vertex.normal - (tangent * taper).as_vec3()).normalize_or(vertex.normal);
         }
         corners
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::taper::taper;
 use crate::plan::{Path, RoundCone};
 
 /// Segments of the trunk to either side that an inset stands over.
@@ -42,10 +43,13 @@ impl PathRings<'_> {
         RoundCone::along(&self.centers, &self.radii, first..end)
     }
 
-    /// Change of radius along the path at a ring between others.
+    /// Change of the radius along the path at a ring (µm per µm); 0 at an end, where the tube goes over into its cap.
     pub(super) fn taper(&self, ring: usize) -> f64 {
-        let [before, here, after] = [ring - 1, ring, ring + 1].map(|n| &self.path.rings[n]);
-        let length = here.center.distance(before.center) + after.center.distance(here.center);
-        ((after.radius - before.radius) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
+        if ring == 0 || ring == self.last() {
+            return 0.0;
+        }
+        let length = |i: usize| self.centers[i].distance(self.centers[i + 1]);
+        let radii = [ring - 1, ring, ring + 1].map(|i| self.radii[i]);
+        taper(radii, [length(ring - 1), length(ring)])
     }
 }

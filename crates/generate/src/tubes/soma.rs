@@ -52,6 +52,7 @@ impl Assembly<'_> {
                     tangent: Vec3::ZERO,
                     role: Role::Soma,
                     collar: 0.0,
+                    taper: 0.0,
                     kind: SwcType::SOMA,
                     sample: sample_id(sample),
                     section: SectionNumber::SOMA,

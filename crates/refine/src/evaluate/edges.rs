@@ -1,8 +1,11 @@
-//! Corners, and the edges between them, which depend on them alone.
+//! Edges between corners, which depend on them alone.
 
 use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_mesh::Role;
 
+use super::center_line::CenterLine;
+use super::corner::{Corner, Jet};
+use super::profile::{Profile, Share};
 use crate::Path;
 
 /// How an edge runs.
@@ -16,147 +19,6 @@ pub(crate) enum EdgeKind {
     Soma,
     /// From a corner of a trunk's or soma's quad to one of the inset within it.
     Loft,
-}
-
-/// A point of a curve or surface with its derivative.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Jet {
-    pub(crate) position: Vec3,
-    pub(crate) derivative: Vec3,
-}
-
-/// A corner with all that its edges depend on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
-    pub(crate) position: Vec3,
-    pub(crate) normal: Vec3,
-    /// Center of its tracing point.
-    pub(crate) center: Vec3,
-    /// From the center to the corner.
-    pub(crate) offset: Vec3,
-    /// Unit direction of the offset; of an inset's corner, across the tangent.
-    pub(crate) radial: Vec3,
-    pub(crate) tangent: Vec3,
-    /// Radius of its tracing point.
-    pub(crate) radius: f32,
-    pub(crate) role: Role,
-    /// Of an inset's corner: length of a loft's last leg along the tangent, negative against it.
-    pub(crate) collar: f32,
-}
-
-impl Corner {
-    pub(crate) fn new(mesh: &CoarseMesh, vertex: u32) -> Self {
-        let vertex = &mesh.vertices[vertex as usize];
-        let tracing = &mesh.tracing[vertex.tracing as usize];
-        let offset = vertex.position - tracing.center;
-        // An inset follows the trunk's surface, so its corners' offsets lean; its tube must not.
-        let radial = match tracing.role {
-            Role::Inset => vertex.normal,
-            _ => offset.normalize_or(vertex.normal),
-        };
-        Self {
-            position: vertex.position,
-            normal: vertex.normal,
-            center: tracing.center,
-            offset,
-            radial,
-            tangent: tracing.tangent,
-            radius: tracing.radius,
-            role: tracing.role,
-            collar: tracing.collar,
-        }
-    }
-
-    /// Whether it is of a circle around a path, across its tangent.
-    fn on_ring(&self) -> bool {
-        !matches!(self.role, Role::Joint | Role::Soma)
-    }
-
-    /// The cubics of somata and lofts leave a corner at right angles to this normal. At a neurite's ring it
-    /// is the tube's, so that the soma runs smoothly into the neurite.
-    pub(super) fn cubic_normal(&self) -> Vec3 {
-        if self.role == Role::Soma {
-            self.normal
-        } else {
-            self.radial
-        }
-    }
-}
-
-/// The center line between two tracing points.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct CenterLine {
-    from: Vec3,
-    to: Vec3,
-    way: Vec3,
-    /// Of a curve: those at its ends.
-    tangents: Option<(Vec3, Vec3)>,
-}
-
-impl CenterLine {
-    pub(crate) fn new(a: &Corner, b: &Corner, path: Path) -> Self {
-        Self {
-            from: a.center,
-            to: b.center,
-            way: b.center - a.center,
-            tangents: (path == Path::Hermite).then(|| hermite_tangents(a, b)),
-        }
-    }
-
-    /// At y ∈ [0, 1].
-    pub(crate) fn at(&self, y: f32) -> Jet {
-        let Self { from, to, way, .. } = *self;
-        let Some((m0, m1)) = self.tangents else {
-            return Jet {
-                position: from * (1.0 - y) + to * y,
-                derivative: way,
-            };
-        };
-        let (y2, y3) = (y * y, y * y * y);
-        let position = from * (2.0 * y3 - 3.0 * y2 + 1.0)
-            + m0 * (y3 - 2.0 * y2 + y)
-            + to * (3.0 * y2 - 2.0 * y3)
-            + m1 * (y3 - y2);
-        let derivative = way * (6.0 * y - 6.0 * y2)
-            + m0 * (3.0 * y2 - 4.0 * y + 1.0)
-            + m1 * (3.0 * y2 - 2.0 * y);
-        Jet {
-            position,
-            derivative,
-        }
-    }
-}
-
-/// Greatest distance by which the tangent at one end may bend the center line away from the
-/// straight segment, in radii of the thinner end.
-///
-/// With its full tangents, a thin neurite with long segments would sway by many times its radius,
-/// away from the cones that were traced and into its neighbors. Chosen from 0.1, 0.12, 0.25, 0.5
-/// and no limit with the example `fidelity`: the largest that keeps the median distance to the
-/// traced cones under 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113,
-/// 0.20 on IF4_140201). The price is visible corners on thin axons with long segments.
-pub(crate) const MOST_SWAY: f32 = 0.12;
-
-/// Tangents of the center line: the directions at its ends times the segment's length, so that it
-/// makes no loops, shortened where it would sway too far. At a joint the segment itself, since the
-/// tubes there have no common direction.
-///
-/// A tangent bends a cubic away from the segment by at most 4/27 of the tangent's part across the
-/// segment.
-pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
-    let way = b.center - a.center;
-    let length = way.length();
-    let direction = way / length.max(f32::MIN_POSITIVE);
-    let most = MOST_SWAY * a.radius.min(b.radius) * (27.0 / 4.0);
-    let tangent = |corner: &Corner| {
-        if corner.role == Role::Joint {
-            return way;
-        }
-        let across = corner.tangent - direction * corner.tangent.dot(direction);
-        let sway = across.length() * length;
-        corner.tangent * (length * (most / sway.max(most)))
-    };
-    (tangent(a), tangent(b))
 }
 
 /// Divides by the length of a vector.
@@ -216,6 +78,22 @@ impl Jet {
             derivative: (self.derivative - along) * share,
         }
     }
+
+    /// Multiplied by the share of a tube's radius, with the derivative around the tube.
+    pub(super) fn around(self, share: Share) -> Self {
+        Self {
+            position: self.position * share.value,
+            derivative: self.derivative * share.value,
+        }
+    }
+
+    /// The same with the derivative along the tube.
+    pub(super) fn along(self, share: Share) -> Self {
+        Self {
+            position: self.position * share.value,
+            derivative: self.derivative * share.value + self.position * share.derivative,
+        }
+    }
 }
 
 pub(super) fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
@@ -239,7 +117,7 @@ pub(crate) struct EdgeCurve<'c> {
 #[derive(Clone, Copy, Debug)]
 enum Course {
     Ring,
-    Along(CenterLine),
+    Along(CenterLine, Profile),
     Cubic([Vec3; 4]),
 }
 
@@ -248,7 +126,10 @@ impl<'c> EdgeCurve<'c> {
     pub(crate) fn new(kind: EdgeKind, a: &'c Corner, b: &'c Corner, path: Path) -> Self {
         let course = match kind {
             EdgeKind::Ring => Course::Ring,
-            EdgeKind::Along => Course::Along(CenterLine::new(a, b, path)),
+            EdgeKind::Along => {
+                let line = CenterLine::new(a, b, path);
+                Course::Along(line, Profile::new(a, b, &line))
+            }
             EdgeKind::Soma => Course::Cubic(soma_controls(a, b)),
             EdgeKind::Loft => Course::Cubic(loft_controls(a, b)),
         };
@@ -265,8 +146,8 @@ impl<'c> EdgeCurve<'c> {
                     ..offset
                 }
             }
-            Course::Along(line) => {
-                let (center, offset) = (line.at(t), self.offset(t));
+            Course::Along(line, profile) => {
+                let (center, offset) = (line.at(t), self.offset(t).along(profile.share(t)));
                 Jet {
                     position: center.position + offset.position,
                     derivative: center.derivative + offset.derivative,
@@ -276,11 +157,19 @@ impl<'c> EdgeCurve<'c> {
         }
     }
 
-    /// From the center line.
+    /// The radius of its tube (µm) at t ∈ [0, 1]; linear between corners of other edges.
+    pub(crate) fn radius(&self, t: f32) -> f32 {
+        match &self.course {
+            Course::Along(_, profile) => profile.radius(t),
+            _ => self.a.radius * (1.0 - t) + self.b.radius * t,
+        }
+    }
+
+    /// From the center line, where the radius is linear along it.
     fn offset(&self, t: f32) -> Jet {
         let Self { a, b, .. } = self;
         let most = match self.course {
-            Course::Along(_) => most_squared(a.offset.length(), b.offset.length(), t),
+            Course::Along(..) => most_squared(a.offset.length(), b.offset.length(), t),
             _ => {
                 let ring = longer(a.offset, b.offset);
                 most_squared(ring, ring, 0.0)

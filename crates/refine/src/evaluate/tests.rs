@@ -17,6 +17,7 @@ fn corner(center: Vec3, tangent: Vec3, radius: f32, angle: f32) -> Corner {
         radius,
         role: Role::Ordinary,
         collar: 0.0,
+        taper: 0.0,
     }
 }
 
@@ -83,6 +84,107 @@ fn normals_of_a_soma_s_patch_go_over_into_those_of_its_sides() {
             let (_, beside) = shape.interior(&RefineOptions::default(), x, y);
             let off = on.angle_between(beside).to_degrees();
             assert!(off < 0.2, "{off}° at {t} of side {side}");
+        }
+    }
+}
+
+/// A corner of a straight tube along z, at this height.
+fn along_z(height: f32, radius: f32, taper: f32, role: Role) -> Corner {
+    Corner {
+        taper,
+        role,
+        ..corner(Vec3::Z * height, Vec3::Z, radius, 0.0)
+    }
+}
+
+/// Radius of a straight tube and its slope (µm per µm) at a share of the way between two corners.
+fn radius_and_slope(a: &Corner, b: &Corner, y: f32) -> (f32, f32) {
+    let jet = edge(EdgeKind::Along, a, b, Path::Hermite, y);
+    let axis = Vec3::new(jet.position.x, jet.position.y, 0.0);
+    let out = axis.normalize_or(Vec3::X);
+    (axis.length(), jet.derivative.dot(out) / jet.derivative.z)
+}
+
+/// What a ring's taper is between two others: the straight slope over both, as steep as is allowed.
+fn taper_between(before: (f32, f32), here: (f32, f32), after: (f32, f32)) -> f32 {
+    let slope = |a: (f32, f32), b: (f32, f32)| (b.1 - a.1) / (b.0 - a.0);
+    let (near, far) = (slope(before, here), slope(here, after));
+    if near * far <= 0.0 {
+        return 0.0;
+    }
+    let most = 3.0 * near.abs().min(far.abs());
+    slope(before, after).clamp(-most, most).clamp(-1.0, 1.0)
+}
+
+/// With a radius that is linear between rings the slopes beside one differ by up to 0.7 here.
+#[test]
+fn slope_of_the_radius_is_continuous_across_a_ring() {
+    let rings = [
+        (0.0, 1.0),
+        (2.0, 1.1),
+        (3.0, 1.6),
+        (6.0, 1.0),
+        (7.0, 0.95),
+        (9.0, 0.4),
+    ];
+    for three in rings.windows(3) {
+        let &[before, here, after] = three else {
+            unreachable!("windows of three")
+        };
+        let taper = taper_between(before, here, after);
+        for role in [Role::Ordinary, Role::Joint, Role::End] {
+            let start = along_z(before.0, before.1, 0.0, role);
+            let middle = along_z(here.0, here.1, taper, Role::Ordinary);
+            let end = along_z(after.0, after.1, 0.0, role);
+            let step = 1e-3;
+            let (below, slope_below) = radius_and_slope(&start, &middle, 1.0 - step);
+            let (above, slope_above) = radius_and_slope(&middle, &end, step);
+            assert!((slope_below - taper).abs() < 0.01, "{slope_below}, {taper}");
+            assert!((slope_above - taper).abs() < 0.01, "{slope_above}, {taper}");
+            // Also as surfaces measure it.
+            let (down, up) = (here.0 - before.0, after.0 - here.0);
+            let differences = [
+                (here.1 - below) / (step * down),
+                (above - here.1) / (step * up),
+            ];
+            let apart = (differences[0] - differences[1]).abs();
+            assert!(apart < 0.01, "{differences:?} at {here:?}");
+        }
+    }
+}
+
+/// Whatever the tapers say.
+#[test]
+fn radius_is_the_traced_one_at_rings_and_between_the_two_on_the_way() {
+    let radii = [0.1, 0.11, 0.7, 4.0];
+    let tapers = [-1.0, -0.2, 0.0, 0.03, 0.4, 1.0, f32::NAN];
+    let roles = [Role::Ordinary, Role::End, Role::Joint, Role::Inset];
+    let pairs = |taper: f32| tapers.map(|other| (taper, other));
+    for (from, to) in radii.into_iter().flat_map(|a| radii.map(|b| (a, b))) {
+        for (near, far) in tapers.into_iter().flat_map(pairs) {
+            for (start, end) in roles.into_iter().flat_map(|a| roles.map(|b| (a, b))) {
+                let a = along_z(0.0, from, near, start);
+                let b = along_z(3.0, to, far, end);
+                let curve = EdgeCurve::new(EdgeKind::Along, &a, &b, Path::Hermite);
+                assert_eq!(
+                    (curve.radius(0.0), curve.at(0.0).position),
+                    (from, a.position)
+                );
+                assert!((curve.radius(1.0) - to).abs() < 1e-6 * to);
+                let mut last = from;
+                for k in 1..=64 {
+                    let y = k as f32 / 64.0;
+                    let radius = curve.radius(y);
+                    let forwards = (radius - last) * (to - from).signum();
+                    assert!(
+                        forwards >= -2e-6 * from.max(to),
+                        "{from} to {to} at {y}: {radius} after {last}"
+                    );
+                    let (drawn, _) = radius_and_slope(&a, &b, y);
+                    assert!((drawn - radius).abs() < 1e-5 * radius, "{drawn}, {radius}");
+                    last = radius;
+                }
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, TracingPoint, Vertex};
 
 use crate::judge::refined_patches::RefinedPatches;
+use crate::tubes::taper;
 
 /// How a ring differs from how it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +93,7 @@ impl Ring {
         }
     }
 
-    /// Leans the normals of a ring between two others by how the tube widens from the one to the other.
+    /// Leans the normals of a ring between two others by how the tube widens there.
     pub(super) fn lean(&self, mesh: &mut CoarseMesh, number: usize) {
         let (&[before], &[after]) = (&self.before[..], &self.after[..]) else {
             return;
@@ -102,12 +103,16 @@ impl Ring {
         }
         let here = mesh.tracing[number];
         let [before, after] = [before, after].map(|ring| mesh.tracing[ring as usize]);
-        let length = here.center.distance(before.center) + after.center.distance(here.center);
-        let slope = (after.radius - before.radius) / length.max(f32::MIN_POSITIVE);
+        let lengths = [before, after].map(|ring| here.center.distance(ring.center).into());
+        let taper = taper(
+            [before, here, after].map(|ring| ring.radius.into()),
+            lengths,
+        ) as f32;
+        mesh.tracing[number].taper = taper;
         for &(v, _) in &self.vertices {
             let vertex = &mut mesh.vertices[v as usize];
             let radial = (vertex.position - here.center).normalize_or(vertex.normal);
-            vertex.normal = (radial - here.tangent * slope.clamp(-1.0, 1.0)).normalize_or(radial);
+            vertex.normal = (radial - here.tangent * taper).normalize_or(radial);
         }
     }
 

@@ -35,7 +35,7 @@ fn make_rings(
         direction_of(part, ring_direction(ring.tangent, ring.turn, 0u)),
         direction_of(part, ring_direction(ring.tangent, ring.turn, 1u)),
         direction_of(part, ring.tangent),
-        slope_bits(point_bits),
+        taper_bits(part.base, point, point_bits),
     );
     coarse[slot / 4u] = CoarsePoint(
         center.x,
@@ -71,7 +71,7 @@ fn make_explicit(@builtin(global_invocation_id) id: vec3<u32>) {
     );
     let center = relative(part, v.center);
     coarse[coarse_index(at) + 1u] =
-        CoarsePoint(center.x, center.y, center.z, v.collar * part.scale, v.role, 0u, 0u, part.instance);
+        CoarsePoint(center.x, center.y, center.z, v.collar * part.scale, v.role, bitcast<u32>(v.taper), 0u, part.instance);
 }
 
 // The placed part that an explicit vertex belongs to.

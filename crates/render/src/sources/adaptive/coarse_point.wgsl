@@ -17,7 +17,7 @@ struct CoarsePoint {
     // In an explicit vertex's second entry: its collar.
     radius: f32,
     // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its
-    // role.
+    // role and taper.
     low: u32,
     high: u32,
     color_key: u32,
@@ -50,9 +50,9 @@ fn unpack_direction(packed: u32) -> vec3<f32> {
 }
 
 // The orientation of a ring: directions of its first and second corner, and the tangent, all at
-// right angles. Packed as a quaternion without its largest component, 19 bits for each of the
-// others, with five bits of the slope.
-fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, slope: u32) -> vec2<u32> {
+// right angles. Packed as a quaternion without its largest component, 17 bits for each of the
+// others, with nine bits of the taper.
+fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, taper: u32) -> vec2<u32> {
     // Squares of the components, each times four.
     let squares = vec4<f32>(
         1.0 + first.x - second.y - tangent.z,
@@ -79,10 +79,10 @@ fn pack_turn(first: vec3<f32>, second: vec3<f32>, tangent: vec3<f32>, slope: u32
         others = vec3<f32>(xz, yz, wz);
     }
     others /= 2.0 * sqrt(squares[largest]);
-    let steps = vec3<u32>((others * (SQRT_2 * 0.5) + 0.5) * 524287.0 + 0.5) & vec3<u32>(0x7ffffu);
+    let steps = vec3<u32>((others * (SQRT_2 * 0.5) + 0.5) * 131071.0 + 0.5) & vec3<u32>(0x1ffffu);
     return vec2<u32>(
-        steps.x | (steps.y << 19u),
-        (steps.y >> 13u) | (steps.z << 6u) | (largest << 25u) | (slope << 27u),
+        steps.x | (steps.y << 17u),
+        (steps.y >> 15u) | (steps.z << 2u) | (largest << 19u) | (taper << 21u),
     );
 }
 
@@ -93,10 +93,10 @@ struct Turn {
 }
 
 fn unpack_turn(low: u32, high: u32) -> Turn {
-    let steps = vec3<u32>(low, (low >> 19u) | (high << 13u), high >> 6u) & vec3<u32>(0x7ffffu);
-    let o = (vec3<f32>(steps) / 524287.0 - 0.5) * SQRT_2;
+    let steps = vec3<u32>(low, (low >> 17u) | (high << 15u), high >> 2u) & vec3<u32>(0x1ffffu);
+    let o = (vec3<f32>(steps) / 131071.0 - 0.5) * SQRT_2;
     let most = sqrt(max(1.0 - dot(o, o), 0.0));
-    let largest = (high >> 25u) & 3u;
+    let largest = (high >> 19u) & 3u;
     var q = vec4<f32>(o, most);
     q = select(q, vec4<f32>(most, o), largest == 0u);
     q = select(q, vec4<f32>(o.x, most, o.y, o.z), largest == 1u);
@@ -114,7 +114,7 @@ struct DrawnRing {
     center: vec3<f32>,
     radius: f32,
     turn: Turn,
-    slope: f32,
+    taper: f32,
     color_key: u32,
     instance: u32,
 }
@@ -124,7 +124,7 @@ fn drawn_ring(point: CoarsePoint) -> DrawnRing {
         center_of(point),
         point.radius,
         unpack_turn(point.low, point.high),
-        slope_of_bits(point.high >> 27u),
+        taper_of_bits(point.high >> 21u),
         point.color_key,
         point.instance,
     );
@@ -137,7 +137,7 @@ fn corner_of_ring(ring: DrawnRing, k: u32) -> Corner {
     let offset = direction * ring.radius;
     return Corner(
         ring.center + offset,
-        normalize(direction - ring.turn.tangent * ring.slope),
+        normalize(direction - ring.turn.tangent * ring.taper),
         ring.center,
         offset,
         direction,
@@ -145,6 +145,7 @@ fn corner_of_ring(ring: DrawnRing, k: u32) -> Corner {
         ring.radius,
         ROLE_ORDINARY,
         0.0,
+        ring.taper,
     );
 }
 
@@ -163,5 +164,6 @@ fn corner_of_explicit(vertex: CoarsePoint, more: CoarsePoint) -> Corner {
         vertex.radius,
         more.low,
         more.radius,
+        bitcast<f32>(more.high),
     );
 }

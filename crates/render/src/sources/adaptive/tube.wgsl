@@ -51,7 +51,7 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
         made.position,
         tube_normal(made, a.normal),
         made.axis,
-        start.radius * (1.0 - y) + end.radius * y,
+        made.radius,
         select(start.color_key, end.color_key, !on_ring && y >= 0.5),
         start.instance,
         wire_grid(PATCH_LATERAL, grid, i, j),

@@ -130,7 +130,7 @@ fn station(chunk: Chunk, level: u32, segment: u32, t: f32) -> Station {
 // A point of a path, in the form that evaluate.wgsl takes.
 fn on_path(p: Stored, tangent: vec3<f32>) -> Corner {
     let none = vec3<f32>(0.0);
-    return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY, 0.0);
+    return Corner(p.position, none, p.position, none, none, tangent, p.radius, ROLE_ORDINARY, 0.0, 0.0);
 }
 
 // Angle (radians) by which a tube is drawn further around than the half that faces the eye, on each
@@ -253,7 +253,7 @@ fn soma_corner(chunk: Chunk, vertex: u32) -> Corner {
     let bytes = vec2<i32>(i32(high << 8u) >> 24u, i32(high) >> 24u);
     let normal = from_octahedral(vec2<f32>(bytes) / 127.0);
     let position = stored_position(chunk, low, high);
-    return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA, 0.0);
+    return Corner(position, normal, position, normal, normal, normal, 0.0, ROLE_SOMA, 0.0, 0.0);
 }
 
 // A vertex of a soma: of its own quads, or of the 4, 16 or 64 that each is refined into.
