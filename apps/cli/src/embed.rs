@@ -2,6 +2,5 @@
 //! and checks, without files and messages.
 
 pub use crate::commands::convert::EditRecipe;
-pub use crate::commands::mesh::MeshRecipe;
 #[cfg(feature = "render")]
 pub use crate::commands::render::{DrawError, Drawing, DrawingInput, Picked};

@@ -19,6 +19,7 @@ mod circuit;
 mod command;
 mod errors;
 mod json;
+mod options;
 #[cfg(feature = "render")]
 mod picture;
 mod surface;

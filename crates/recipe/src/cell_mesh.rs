@@ -1,25 +1,32 @@
 //! A cell meshed: its coarse mesh, and the surface where what crosses was merged.
 
+use std::sync::Arc;
+
 use neurotess_generate::{GenerateError, Generated, generate_stoppable};
+use neurotess_mesh::Format;
 use neurotess_morphology::Morphology;
 use neurotess_union::UnionError;
 
 use crate::merged::Merged;
 use crate::surface::CellSurface;
 use crate::thinning::Thinning;
-use crate::{MeshError, MeshOptions, Watch, verdict};
+use crate::{MeshError, MeshOptions, Stage, Watch, verdict};
 
 /// How often a mesh for simulators is made again with thinner tubes.
 const ROUNDS: usize = 6;
 
 /// A cell's coarse mesh, and the surface where what crosses was merged.
 pub struct CellMesh {
+    /// The tracing.
+    pub morphology: Arc<Morphology>,
     /// The coarse mesh, and what was found on the way.
-    pub generated: Generated,
+    pub generated: Arc<Generated>,
     /// Where what crosses was merged.
     pub(crate) merged: Option<Merged>,
     /// The file's numbers of samples where tubes were made thinner than traced, since they would have grown together.
     pub(crate) thinned: Vec<i64>,
+    /// Seconds that somata took, in all rounds; 0 without a clock.
+    pub soma_seconds: f64,
     /// Seconds that refining and merging took, in all rounds; 0 where nothing is merged, or without a clock.
     pub merging_seconds: f64,
     options: MeshOptions,
@@ -31,7 +38,8 @@ pub struct CellMesh {
 /// It cannot be meshed, the options leave nothing of it, what crosses cannot be merged, or solvers could not take what was
 /// asked for as a mesh for simulations.
 pub fn mesh(cell: &impl AsRef<Morphology>, options: &MeshOptions) -> Result<CellMesh, MeshError> {
-    mesh_watched(cell.as_ref(), options, &Watch::default())
+    let morphology = Arc::new(cell.as_ref().clone());
+    mesh_watched(morphology, options, &Watch::default())
 }
 
 /// [`mesh`], which another thread can stop, and which a clock watches.
@@ -39,61 +47,97 @@ pub fn mesh(cell: &impl AsRef<Morphology>, options: &MeshOptions) -> Result<Cell
 /// # Errors
 /// As [`mesh`], and [`MeshError::Stopped`].
 pub fn mesh_watched(
-    morphology: &Morphology,
+    morphology: Arc<Morphology>,
     options: &MeshOptions,
     watch: &Watch<'_>,
 ) -> Result<CellMesh, MeshError> {
     options.check()?;
-    let mut best = CellMesh::once(morphology, options, watch)?;
-    if !options.is_simulation() {
+    let generated = generated(&morphology, options, watch)?;
+    let best = CellMesh::of(morphology, generated, options, watch)?;
+    improved(best, watch)
+}
+
+/// [`mesh_watched`] of a cell whose coarse mesh is there, made by [`MeshOptions::generate_options`].
+///
+/// # Errors
+/// As [`mesh_watched`].
+pub fn mesh_from(
+    generated: Arc<Generated>,
+    morphology: Arc<Morphology>,
+    options: &MeshOptions,
+    watch: &Watch<'_>,
+) -> Result<CellMesh, MeshError> {
+    options.check()?;
+    let best = CellMesh::of(morphology, generated, options, watch)?;
+    improved(best, watch)
+}
+
+/// The same mesh; one for simulators is made again with thinner tubes where they grew together.
+fn improved(mut best: CellMesh, watch: &Watch<'_>) -> Result<CellMesh, MeshError> {
+    if !best.options.is_simulation() {
         return Ok(best);
     }
-    let mut thinning = Thinning::new(morphology);
+    let (traced, options) = (Arc::clone(&best.morphology), best.options.clone());
+    let mut thinning = Thinning::new(&traced);
     let mut places = best.places();
-    let (mut soma_seconds, mut merging_seconds) =
-        (best.generated.soma_seconds, best.merging_seconds);
+    let (mut soma_seconds, mut merging_seconds) = (best.soma_seconds, best.merging_seconds);
     for _ in 0..ROUNDS {
         if best.faults() == Faults::default() || !thinning.thin(&places) {
             break;
         }
-        let mut next = match CellMesh::once(&thinning.morphology(), options, watch) {
+        let next = generated(&thinning.morphology(), &options, watch);
+        let next = next.and_then(|next| CellMesh::of(Arc::clone(&traced), next, &options, watch));
+        let mut next = match next {
             Ok(next) => next,
             Err(_) if watch.is_stopped() => return Err(MeshError::Stopped),
             // What there is already may do.
             Err(_) => break,
         };
         next.thinned = thinning.samples();
-        soma_seconds += next.generated.soma_seconds;
+        soma_seconds += next.soma_seconds;
         merging_seconds += next.merging_seconds;
         places = next.places();
         if next.faults() < best.faults() {
             best = next;
         }
     }
-    best.generated.soma_seconds = soma_seconds;
+    best.soma_seconds = soma_seconds;
     best.merging_seconds = merging_seconds;
     verdict::check(&best.surface(), &best.generated)?;
     Ok(best)
 }
 
+/// The coarse mesh of a tracing.
+fn generated(
+    morphology: &Morphology,
+    options: &MeshOptions,
+    watch: &Watch<'_>,
+) -> Result<Arc<Generated>, MeshError> {
+    watch.tell(Stage::Mesh, 0, 0);
+    let generated = generate_stoppable(
+        morphology,
+        &options.generate_options(),
+        || watch.seconds(),
+        watch.flag(),
+    );
+    generated.map(Arc::new).map_err(|e| match e {
+        GenerateError::Stopped => MeshError::Stopped,
+        e => e.into(),
+    })
+}
+
 impl CellMesh {
-    fn once(
-        morphology: &Morphology,
+    fn of(
+        morphology: Arc<Morphology>,
+        generated: Arc<Generated>,
         options: &MeshOptions,
         watch: &Watch<'_>,
     ) -> Result<Self, MeshError> {
-        let made = generate_stoppable(
-            morphology,
-            &options.generate_options(),
-            || watch.seconds(),
-            watch.flag(),
-        );
-        let generated = made.map_err(|e| match e {
-            GenerateError::Stopped => MeshError::Stopped,
-            e => e.into(),
-        })?;
         if generated.mesh.patches.is_empty() {
             return Err(MeshError::Empty);
+        }
+        if options.merges() {
+            watch.tell(Stage::Merge, 0, 0);
         }
         let start = watch.seconds();
         let merged = options
@@ -105,7 +149,9 @@ impl CellMesh {
         })?;
         Ok(Self {
             merging_seconds: watch.seconds() - start,
+            morphology,
             merged,
+            soma_seconds: generated.soma_seconds,
             generated,
             thinned: Vec::new(),
             options: options.clone(),
@@ -117,9 +163,19 @@ impl CellMesh {
         &self.options
     }
 
-    /// The surface.
+    /// The surface. Quads of the coarse mesh stay quads.
     pub fn surface(&self) -> CellSurface<'_> {
-        CellSurface::new(&self.generated.mesh, self.merged.as_ref(), &self.options)
+        self.surface_with(true)
+    }
+
+    /// The surface as a format takes it: of triangles, if it holds no quads.
+    pub fn surface_for(&self, format: Format) -> CellSurface<'_> {
+        self.surface_with(format.has_quads())
+    }
+
+    fn surface_with(&self, coarse_quads: bool) -> CellSurface<'_> {
+        let (mesh, merged) = (&self.generated.mesh, self.merged.as_ref());
+        CellSurface::new(mesh, merged, &self.options, coarse_quads)
     }
 
     /// What merging did that a mesh for simulators should not have.

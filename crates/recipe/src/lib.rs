@@ -19,27 +19,39 @@
 #![forbid(unsafe_code)]
 
 mod cell_mesh;
+mod checks;
 mod error;
+mod files;
 mod merged;
+mod named;
+mod names;
 mod options;
 mod pieces;
 mod refined;
 mod report;
-mod save;
 mod surface;
 mod thinning;
 mod tracing;
+mod value;
 mod verdict;
 mod warning;
 mod watch;
+mod words;
 
-pub use cell_mesh::{CellMesh, mesh, mesh_watched};
+pub use cell_mesh::{CellMesh, mesh, mesh_from, mesh_watched};
 pub use error::{MeshError, OptionsError};
+pub use files::{
+    CellFiles, FileOptions, FileSurface, PartFile, SaveError, SaveOptions, Saved, WrittenFiles,
+    part_file,
+};
 pub use merged::Merged;
-pub use options::{Crossings, Levels, MeshOptions, Purpose, SIMULATION_ASPECT};
+pub use named::NamedOptions;
+pub use names::{MeshOption, Spelling};
+pub use options::{Crossings, Levels, MeshOptions, Purpose, Radii, SIMULATION_ASPECT};
 pub use report::{CrossingsReport, MeshReport, SeparationReport, SmoothingReport};
-pub use save::SaveError;
 pub use surface::CellSurface;
 pub use tracing::{Tracing, read};
+pub use value::OptionValue;
 pub use warning::{SurfaceWarning, Warning};
-pub use watch::Watch;
+pub use watch::{Progress, Stage, Watch};
+pub use words::{KINDS, neurite_kinds};

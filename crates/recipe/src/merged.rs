@@ -54,7 +54,7 @@ impl Merged {
             },
             false => UnionOptions::default(),
         };
-        let whole = SurfaceMesh::collect_stoppable(&*refined(mesh, options), watch.flag());
+        let whole = SurfaceMesh::collect_stoppable(&*refined(mesh, options, true), watch.flag());
         let merged = whole
             .ok_or(UnionError::Stopped)
             .and_then(|whole| union_stoppable(&whole, &union_options, watch.flag()))?;

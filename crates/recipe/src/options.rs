@@ -1,18 +1,22 @@
 //! Options of a cell's mesh.
 
-use neurotess_generate::{GenerateOptions, Sides};
-use neurotess_refine::{EdgeRule, LodCriterion, RefineOptions};
-
-use crate::OptionsError;
+use neurotess_generate::{GenerateOptions, Sides, Smooth, SomaMethod};
+use neurotess_morphology::NeuriteKind;
+use neurotess_refine::{EdgeRule, LodCriterion, LodView, RefineOptions};
 
 /// How many times the local radius edges along neurites of a mesh for simulators may be long: a third to a half as
 /// many triangles as with 1, and still none narrower than 15° but for a few.
 pub const SIMULATION_ASPECT: f32 = 3.0;
 /// Level of a surface to look at.
-const LEVEL: u32 = 4;
+pub(crate) const LEVEL: u32 = 4;
+/// What errors say of levels.
+pub(crate) const LEVELS: &str = "0..=64";
+pub(crate) const LEVELS_ALONG: &str = "1..=64";
+pub(crate) const SOMA_LEVELS: &str = "1..=32";
 
 /// How finely a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Levels {
     /// The coarse quads themselves.
     Coarse,
@@ -20,6 +24,20 @@ pub enum Levels {
     Criterion(LodCriterion),
     /// By kinds of edges.
     Edges(EdgeRule),
+    /// By a criterion that depends on a view.
+    Seen {
+        /// The criterion.
+        criterion: LodCriterion,
+        /// The view, in the coordinates of the coarse mesh.
+        view: LodView,
+    },
+}
+
+impl Levels {
+    /// Whether edges have lengths instead of subdivisions.
+    pub fn is_by_length(&self) -> bool {
+        matches!(self, Self::Edges(EdgeRule::Lengths { .. }))
+    }
 }
 
 /// What becomes of places where the surface crosses itself.
@@ -44,7 +62,19 @@ pub enum Purpose {
     Simulation,
 }
 
+/// Which radius rings of neurites have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Radii {
+    /// The traced one: vertices lie on the circle, and the polygon within it.
+    #[default]
+    Traced,
+    /// As much larger as gives the polygon the area of the circle, so that neurites keep their volume.
+    EqualArea,
+}
+
 /// All that a cell's mesh depends on. The command line, Python and the window have the same.
+///
+/// In files it has the names of [`NamedOptions`](crate::NamedOptions): `{"simulation": true, "max_edge": 2.0}`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshOptions {
@@ -54,8 +84,6 @@ pub struct MeshOptions {
     pub refine: RefineOptions,
     /// How finely it is made.
     pub levels: Levels,
-    /// Whether quads of [`Levels::Coarse`] stay quads; else each becomes two triangles.
-    pub coarse_quads: bool,
     /// What becomes of places where it crosses itself.
     pub crossings: Crossings,
     /// What it is for.
@@ -69,7 +97,6 @@ impl Default for MeshOptions {
             generate: GenerateOptions::default(),
             refine: RefineOptions::default(),
             levels: Levels::Criterion(LodCriterion::Homogeneous(LEVEL)),
-            coarse_quads: true,
             crossings: Crossings::Keep,
             purpose: Purpose::Surface,
         }
@@ -99,18 +126,26 @@ impl MeshOptions {
 
     /// The same with a level, 1 to 64: subdivisions of each edge of the coarse mesh; 0: the coarse mesh itself.
     #[must_use]
-    pub fn with_level(mut self, level: u32) -> Self {
-        self.levels = match level {
+    pub fn with_level(self, level: u32) -> Self {
+        self.with_levels(match level {
             0 => Levels::Coarse,
             level => Levels::Criterion(LodCriterion::Homogeneous(level)),
-        };
-        self
+        })
     }
 
     /// The same within this error (µm) of the smooth surface.
     #[must_use]
-    pub fn with_max_error(mut self, error: f32) -> Self {
-        self.levels = Levels::Criterion(LodCriterion::MaxError(error));
+    pub fn with_max_error(self, error: f32) -> Self {
+        self.with_levels(Levels::Criterion(LodCriterion::MaxError(error)))
+    }
+
+    /// The same as fine as this. Neurites that keep their volume do so at these levels, if their sides are known.
+    #[must_use]
+    pub fn with_levels(mut self, levels: Levels) -> Self {
+        self.levels = levels;
+        if self.generate.equal_area.is_some() {
+            self.generate.equal_area = Self::sides(levels);
+        }
         self
     }
 
@@ -121,13 +156,41 @@ impl MeshOptions {
         self
     }
 
+    /// The same with another soma.
+    #[must_use]
+    pub fn with_soma(mut self, soma: SomaMethod) -> Self {
+        self.generate.soma = soma;
+        self
+    }
+
+    /// The same with the noise of the tracing smoothed away.
+    #[must_use]
+    pub fn with_smooth(mut self, smooth: Smooth) -> Self {
+        self.generate.smooth = smooth;
+        self
+    }
+
+    /// The same with these types of neurites only.
+    #[must_use]
+    pub fn with_types(mut self, types: impl IntoIterator<Item = NeuriteKind>) -> Self {
+        self.generate.kinds = Some(types.into_iter().collect());
+        self
+    }
+
+    /// The same with quads where possible, or with triangles only.
+    #[must_use]
+    pub fn with_quads(mut self, quads: bool) -> Self {
+        self.refine.quads = quads;
+        self
+    }
+
     /// Sides of the polygons around neurites, for radii that make up for them; none where they differ from place to
     /// place in a way that is not known beforehand.
     pub fn sides(levels: Levels) -> Option<Sides> {
         match levels {
             Levels::Coarse => Some(Sides::Level(1)),
             Levels::Criterion(LodCriterion::Homogeneous(level)) => Some(Sides::Level(level)),
-            Levels::Criterion(_) => None,
+            Levels::Criterion(_) | Levels::Seen { .. } => None,
             Levels::Edges(EdgeRule::Levels { around, .. }) => Some(Sides::Level(around)),
             Levels::Edges(EdgeRule::Lengths {
                 radii, least, most, ..
@@ -159,32 +222,20 @@ impl MeshOptions {
             ..self.generate.clone()
         }
     }
-
-    /// Whether they fit together.
-    ///
-    /// # Errors
-    /// Which do not.
-    pub fn check(&self) -> Result<(), OptionsError> {
-        if self.merges() && self.refine.quads {
-            return Err(OptionsError::MergedQuads);
-        }
-        if self.is_simulation() && !self.merges() {
-            return Err(OptionsError::CrossingSimulation);
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::OptionsError;
+
     use super::*;
 
     #[test]
     fn what_does_not_fit_together_is_an_error() {
         assert_eq!(MeshOptions::default().check(), Ok(()));
         assert_eq!(MeshOptions::simulation().check(), Ok(()));
-        let mut quads = MeshOptions::default().with_crossings(Crossings::Merge);
-        quads.refine.quads = true;
+        let quads = MeshOptions::default().with_crossings(Crossings::Merge);
+        let quads = quads.with_quads(true);
         assert_eq!(quads.check(), Err(OptionsError::MergedQuads));
         let crossing = MeshOptions::simulation().with_crossings(Crossings::Keep);
         assert_eq!(crossing.check(), Err(OptionsError::CrossingSimulation));

@@ -26,6 +26,7 @@ impl<'m> CellSurface<'m> {
         mesh: &'m CoarseMesh,
         merged: Option<&'m Merged>,
         options: &MeshOptions,
+        coarse_quads: bool,
     ) -> Self {
         if let Some(merged) = merged {
             return Self {
@@ -34,7 +35,8 @@ impl<'m> CellSurface<'m> {
             };
         }
         // Refinement does not change the topology.
-        let (refined, topology) = rayon::join(|| refined(mesh, options), || mesh.topology());
+        let (refined, topology) =
+            rayon::join(|| refined(mesh, options, coarse_quads), || mesh.topology());
         Self {
             made: MadeSurface::Refined(refined),
             topology,

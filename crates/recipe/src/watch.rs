@@ -2,11 +2,37 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A way to stop work, and a clock that says what it took. The default never stops, and has no clock.
+/// A way to stop work, a clock that says what it took, and someone who is told how far it is. The default never stops,
+/// has no clock, and tells nobody.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'w> {
     stopped: Option<&'w AtomicBool>,
-    clock: Option<&'w dyn Fn() -> f64>,
+    clock: Option<&'w (dyn Fn() -> f64 + Sync)>,
+    progress: Option<&'w (dyn Fn(Progress) + Sync)>,
+}
+
+/// How far work is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Steps that are done.
+    pub done: usize,
+    /// Steps in all, about; 0 where they are not counted.
+    pub all: usize,
+}
+
+/// What is being done about a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Its coarse mesh.
+    Mesh,
+    /// What crosses becomes one surface.
+    Merge,
+    /// Its files, block by block.
+    Write,
 }
 
 static RUNNING: AtomicBool = AtomicBool::new(false);
@@ -22,9 +48,18 @@ impl<'w> Watch<'w> {
 
     /// With a clock, which tells the seconds since any moment. Nothing but seconds in reports depends on it.
     #[must_use]
-    pub fn with_clock(self, clock: &'w dyn Fn() -> f64) -> Self {
+    pub fn with_clock(self, clock: &'w (dyn Fn() -> f64 + Sync)) -> Self {
         Self {
             clock: Some(clock),
+            ..self
+        }
+    }
+
+    /// With someone who is told how far it is, by any thread.
+    #[must_use]
+    pub fn with_progress(self, progress: &'w (dyn Fn(Progress) + Sync)) -> Self {
+        Self {
+            progress: Some(progress),
             ..self
         }
     }
@@ -40,5 +75,12 @@ impl<'w> Watch<'w> {
     /// Seconds since any moment; 0 without a clock.
     pub(crate) fn seconds(&self) -> f64 {
         self.clock.map_or(0.0, |clock| clock())
+    }
+
+    /// Tells how far it is.
+    pub(crate) fn tell(&self, stage: Stage, done: usize, all: usize) {
+        if let Some(progress) = self.progress {
+            progress(Progress { stage, done, all });
+        }
     }
 }

@@ -28,19 +28,6 @@ pub(crate) struct Job {
     pub(crate) parts: bool,
 }
 
-impl Job {
-    /// The file of a part: the name of the type behind that of the file.
-    pub(crate) fn part(out: &Path, name: &str) -> PathBuf {
-        let mut file = out.file_stem().unwrap_or_default().to_owned();
-        file.push(format!("_{name}"));
-        if let Some(extension) = out.extension() {
-            file.push(".");
-            file.push(extension);
-        }
-        out.with_file_name(file)
-    }
-}
-
 /// Whether OUT is a folder: for anything but a single file, and if it already is one.
 pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
     !inputs.one_file || !is_standard(out) && (out.is_dir() || ends_in_separator(out))
@@ -146,13 +133,6 @@ mod tests {
         assert_eq!(jobs[0].out, Path::new("x/a.ply"));
         let jobs = plan(&inputs(&["a.swc.gz"], true), Path::new("x/"), "ply").expect("a plan");
         assert_eq!(jobs[0].out, Path::new("x/a.ply"));
-    }
-
-    #[test]
-    fn parts_are_named_after_their_file() {
-        let part = |out: &str| Job::part(Path::new(out), "axon");
-        assert_eq!(part("x/a.CNG.obj"), Path::new("x/a.CNG_axon.obj"));
-        assert_eq!(part("a"), Path::new("a_axon"));
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
 }
 
 /// A factor on radii. Far beyond these bounds there is nothing to recognize.
+#[cfg(feature = "render")]
 pub(crate) fn radius_factor(text: &str) -> Result<f64, String> {
     match positive(text) {
         Ok(factor) if (0.01..=1000.0).contains(&factor) => Ok(factor),

@@ -219,7 +219,7 @@ class Circuit(DrawnCircuit):
         What selects cells is that of `select`. An error is a value, as in `mesh_many`. Nodes that share a
         morphology share its coarse mesh.
         """
-        recipe = _neurotess.Recipe(_options.arguments(options))
+        recipe = _neurotess.Recipe(dict(options))
         rows = self._rows(nodes, node_set, population, region, sample, sample_seed)
         return self._meshes(rows, recipe, threads)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 
-from . import _neurotess, _options
+from . import _neurotess
 from ._morphology import Morphology, Notice, _read, read
 from ._packages import needed
 
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         soma: Literal["fem", "sphere", "profile", "none"] | None
         poisson: float | None
         soma_scale: float | None
+        radii: Literal["traced", "equal-area"] | None
         radius_factor: float | None
         radius: float | None
         min_radius: float | None
@@ -329,7 +330,7 @@ def mesh(
         "types": types,
         "quads": quads,
     }
-    recipe = _neurotess.Recipe(_options.arguments(options))
+    recipe = _neurotess.Recipe(options)
     if not isinstance(cell, Morphology):
         cell = read(cell)
     return _mesh(recipe, cell, threads)
@@ -415,7 +416,7 @@ def mesh_many(
     >>> [result.ok for result in nt.mesh_many(cells, threads=2, level=1)]
     [True, True, True]
     """
-    recipe = _neurotess.Recipe(_options.arguments(options))
+    recipe = _neurotess.Recipe(dict(options))
     if threads is not None and threads < 1:
         raise ValueError(f"threads={threads} is not 1 or more")
     return _results(cells, recipe, threads or _cores())

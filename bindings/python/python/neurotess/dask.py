@@ -13,7 +13,7 @@ import os
 import tempfile
 from collections import namedtuple
 
-from . import __version__, _neurotess, _options
+from . import __version__, _neurotess
 from ._meshes import _mesh
 from ._morphology import Morphology, _read
 
@@ -63,9 +63,8 @@ def mesh(
     and running it twice gives the same file: tasks of a worker that is lost run elsewhere. A mesh that is there
     already, of the same content and options, is left alone, so a batch that was stopped goes on where it was.
     """
-    arguments = _options.arguments(options)
     # Wrong options are told here, not by each worker.
-    _neurotess.Recipe(arguments)
+    _neurotess.Recipe(dict(options))
     folder = os.path.abspath(os.fspath(out))
     os.makedirs(os.path.join(folder, RECORDS), exist_ok=True)
     files = [os.path.abspath(os.fspath(path)) for path in paths]
@@ -73,26 +72,27 @@ def mesh(
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"several files would become {twice}: mesh them into different folders")
-    tasks = [(file, folder, name, arguments) for file, name in zip(files, names, strict=True)]
+    tasks = [(file, folder, name, dict(options)) for file, name in zip(files, names, strict=True)]
     if client is None:
         return [make(task) for task in tasks]
     futures = client.map(make, tasks, pure=False, retries=2)
     return [Made(*made) for made in client.gather(futures)]
 
 
-def make(task: tuple[str, str, str, list[str]]) -> Made:
+def make(task: tuple[str, str, str, dict[str, Any]]) -> Made:
     """Makes one mesh: a task."""
-    file, folder, name, arguments = task
+    file, folder, name, options = task
     path = os.path.join(folder, name)
     record = os.path.join(folder, RECORDS, name + ".json")
     try:
         with open(file, "rb") as stream:
             content = stream.read()
-        key = _key(content, name, arguments)
+        recipe = _neurotess.Recipe(options)
+        key = _key(content, name, recipe)
         if os.path.exists(path) and _recorded(record) == key:
             return Made(file, path, None, True)
         cell = Morphology(_read(content, _format(file), file, False))
-        made = _mesh(_neurotess.Recipe(arguments), cell, 1)
+        made = _mesh(recipe, cell, 1)
         made.save(path)
         _replace(record, json.dumps({"of": file, "key": key}))
         return Made(file, path, None, False)
@@ -100,9 +100,9 @@ def make(task: tuple[str, str, str, list[str]]) -> Made:
         return Made(file, path, f"{type(error).__name__}: {error}", False)
 
 
-def _key(content: bytes, name: str, arguments: list[str]) -> str:
+def _key(content: bytes, name: str, recipe: _neurotess.Recipe) -> str:
     hashed = hashlib.sha256(content)
-    hashed.update(json.dumps([__version__, os.path.splitext(name)[1], sorted(arguments)]).encode())
+    hashed.update(json.dumps([__version__, os.path.splitext(name)[1], recipe.json]).encode())
     return hashed.hexdigest()
 
 

@@ -13,8 +13,7 @@ use neurotess::circuit::{
 };
 use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
-use neurotess::recipe::CellMesh;
-use neurotess_cli::embed::MeshRecipe;
+use neurotess::recipe::{CellMesh, MeshOptions};
 use numpy::PyArray2;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -23,7 +22,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Pair};
 use crate::cell::Cell;
 use crate::errors;
-use crate::surface::{Columns, Recipe, Stopped, Surface, of_made};
+use crate::surface::{Columns, Recipe, Stopped, Surface, meshed, of_made, taken};
 use crate::work::{Stop, released, stoppable};
 pub(crate) use recordings::Report;
 
@@ -257,7 +256,7 @@ impl Circuit {
     fn mesher(&self, recipe: &Recipe) -> Mesher {
         Mesher {
             circuit: Arc::clone(&self.circuit),
-            recipe: recipe.0.clone(),
+            options: recipe.0.clone(),
             meshes: Arc::default(),
         }
     }
@@ -273,7 +272,7 @@ impl Circuit {
 #[pyclass(frozen, module = "neurotess._neurotess")]
 pub(crate) struct Mesher {
     circuit: Arc<circuits::Circuit>,
-    recipe: MeshRecipe,
+    options: MeshOptions,
     meshes: Arc<Meshes>,
 }
 
@@ -294,15 +293,16 @@ impl Mesher {
             py.detach(|| file.read()).map_err(|e| errors::read(py, e))?;
         }
         let (circuit, meshes) = (Arc::clone(&self.circuit), Arc::clone(&self.meshes));
-        let recipe = self.recipe.clone();
+        let options = self.options.clone();
         let made = stoppable(py, threads, &Stop::default(), move |stopped| {
             let read = circuit.templates[template.index()].read();
             let read = read.map_err(ToString::to_string)?;
             let mesh = kept(&meshes, template.0, || {
-                recipe.mesh(&read.morphology, stopped)
+                let morphology = Arc::new(read.morphology.clone());
+                meshed(morphology, &options, stopped)
             })?;
             let at = instance.world_from_cell(soma_center(&read.morphology));
-            recipe.surface(&mesh, |surface| placed(surface, at, stopped))
+            taken(&mesh, |surface| placed(surface, at, stopped))
         })?;
         of_made(py, made)
     }

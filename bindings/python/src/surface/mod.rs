@@ -3,34 +3,43 @@
 mod columns;
 mod slices;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use neurotess::mesh::{self, Format, InUnit, SurfaceMesh, Unit, WriteOptions, measure_surface};
-use neurotess::output::{Output, write_into};
-use neurotess::recipe::MeshReport;
-use neurotess_cli::embed::MeshRecipe;
+use neurotess::mesh::{self, Format, SurfaceMesh, Unit, Watched, measure_surface};
+use neurotess::morphology::Morphology;
+use neurotess::recipe::{
+    CellMesh, FileOptions, FileSurface, MeshOptions, MeshReport, SaveError, Spelling, Watch,
+    mesh_watched,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::cell::{Cell, existing};
+use crate::options::mesh_options;
 use crate::work::{Stop, released, stoppable};
 use crate::{arrays, errors, json};
 pub(crate) use columns::{Columns, Stopped};
 use slices::Slices;
 
-/// How cells are meshed: options of the command line, checked.
+/// How cells are meshed.
 #[pyclass(frozen, module = "neurotess._neurotess")]
-pub(crate) struct Recipe(pub(crate) MeshRecipe);
+pub(crate) struct Recipe(pub(crate) MeshOptions);
 
 #[pymethods]
 impl Recipe {
     #[new]
-    fn new(py: Python<'_>, options: Vec<String>) -> PyResult<Self> {
-        let recipe = MeshRecipe::new(options);
-        recipe.map(Self).map_err(|e| errors::option(py, &e))
+    fn new(keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        mesh_options(keywords).map(Self)
+    }
+
+    /// The options as JSON, the same however they were written.
+    #[getter]
+    fn json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.0).map_err(errors::bug)
     }
 
     /// Meshes a cell: its surface, and what is known of it. `stop`: by which others can stop it.
@@ -41,13 +50,37 @@ impl Recipe {
         threads: Option<usize>,
         stop: Option<&Stop>,
     ) -> PyResult<(Surface, Bound<'py, PyAny>)> {
-        let (recipe, morphology) = (self.0.clone(), cell.morphology.clone());
+        let (options, morphology) = (self.0.clone(), cell.morphology.clone());
         let made = stoppable(py, threads, &Stop::of(stop), move |stopped| {
-            let cell = recipe.mesh(&morphology, stopped)?;
-            recipe.surface(&cell, |surface| Columns::of(surface, stopped))
+            let cell = meshed(morphology, &options, stopped)?;
+            taken(&cell, |surface| Columns::of(surface, stopped))
         })?;
         of_made(py, made)
     }
+}
+
+/// The mesh of a cell, unless another thread sets `stopped`.
+pub(crate) fn meshed(
+    morphology: Arc<Morphology>,
+    options: &MeshOptions,
+    stopped: &AtomicBool,
+) -> Result<CellMesh, String> {
+    let cell = mesh_watched(morphology, options, &Watch::stopped_by(stopped));
+    cell.map_err(|e| e.told(Spelling::Keyword))
+}
+
+/// What is taken of a mesh's surface, and what is known of it; an error if it is no surface around its tracing, which is
+/// a fault of ours.
+pub(crate) fn taken<T>(
+    cell: &CellMesh,
+    take: impl FnOnce(&dyn mesh::Surface) -> T,
+) -> Result<(T, MeshReport), String> {
+    let surface = cell.surface();
+    let report = cell.report_of(&surface);
+    let watched = Watched::new(surface.surface());
+    let taken = take(&watched);
+    watched.check().map_err(|e| e.to_string())?;
+    Ok((taken, report))
 }
 
 /// A surface that was made, or why not.
@@ -222,38 +255,17 @@ impl Surface {
                 )));
             }
         };
-        if materials && !matches!(format, Format::Obj | Format::Glb) {
-            return Err(PyValueError::new_err(format!(
-                "{format} knows no materials: leave out materials=True, or write obj or glb"
-            )));
-        }
-        let beside = (format == Format::Obj && materials).then(|| path.with_extension("mtl"));
-        let name = beside.as_deref().and_then(Path::file_name);
-        let options = WriteOptions {
-            material_file: name.map(|name| name.to_string_lossy().into_owned()),
-            glb_materials: materials,
-        };
+        let mut options = FileOptions::new(format);
+        (options.unit, options.materials) = (unit, materials);
+        // Quads are halved where a format has none.
+        options
+            .check(&MeshOptions::default())
+            .map_err(|e| PyValueError::new_err(e.told(Spelling::Keyword)))?;
         self.with(py, |slices| {
-            let mut output =
-                Output::create(&path, existing(overwrite)).map_err(|e| errors::output(&e))?;
-            let beside = beside.as_deref().map(|path| {
-                let file = Output::create(path, existing(overwrite));
-                file.map(|file| (path, file))
-            });
-            let beside = beside.transpose().map_err(|e| errors::output(&e))?;
-            let scaled = InUnit::new(slices, unit);
-            let surface: &dyn mesh::Surface = match unit {
-                Unit::Micrometer => slices,
-                Unit::Meter => &scaled,
-            };
-            let kinds =
-                mesh::write_with(surface, format, &options, output.file()).map_err(unwritten)?;
-            if let Some((path, file)) = beside {
-                let text = mesh::obj_materials(&kinds);
-                write_into(file, path, |file| file.write_all(text.as_bytes()))
-                    .map_err(|e| errors::output(&e))?;
-            }
-            output.finish().map_err(|e| errors::output(&e))
+            let watch = Watch::default();
+            let surface = FileSurface::new(slices, &options, &watch);
+            let saved = surface.and_then(|s| s.save(&path, existing(overwrite), &watch));
+            saved.map(drop).map_err(|e| unsaved(&e))
         })?
     }
 
@@ -309,9 +321,9 @@ impl Surface {
     }
 }
 
-fn unwritten(error: mesh::WriteError) -> PyErr {
+fn unsaved(error: &SaveError) -> PyErr {
     match error {
-        mesh::WriteError::Io(e) => e.into(),
+        SaveError::Output(e) => errors::output(e),
         other => PyValueError::new_err(other.to_string()),
     }
 }

@@ -7,7 +7,6 @@ use neurotess::generate::Smooth;
 use neurotess::mesh::{Format, Unit};
 
 use crate::options::cells::CellArgs;
-use crate::options::numbers::positive;
 use crate::options::out::OutArgs;
 use crate::options::radius::RadiusArgs;
 use crate::options::rings::RingArgs;
@@ -40,13 +39,21 @@ pub(crate) struct MeshArgs {
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) out: OutArgs,
-    /// Subdivisions per coarse edge, 1 to 64; 0 writes the coarse quads themselves
-    #[arg(long, default_value_t = 4, value_name = "N", help_heading = "Refinement",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=64))]
-    pub(crate) level: u32,
+    /// Subdivisions per coarse edge, 1 to 64; 0 writes the coarse quads themselves [default: 4]
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Refinement",
+        allow_negative_numbers = true
+    )]
+    pub(crate) level: Option<i64>,
     /// As fine as keeps the surface within E µm of the level-64 one, instead of --level
-    #[arg(long, value_name = "E", conflicts_with = "level", value_parser = positive,
-          allow_negative_numbers = true, help_heading = "Refinement")]
+    #[arg(
+        long,
+        value_name = "E",
+        allow_negative_numbers = true,
+        help_heading = "Refinement"
+    )]
     pub(crate) max_error: Option<f64>,
     /// Course between traced points
     #[arg(long, value_enum, default_value_t = PathArg::Hermite, value_name = "COURSE",
@@ -57,26 +64,41 @@ pub(crate) struct MeshArgs {
           help_heading = "Refinement")]
     pub(crate) caps: CapsArg,
     /// Subdivisions per coarse edge along neurites; --level is then for the edges around them
-    #[arg(long, value_name = "N", conflicts_with = "max_error", help_heading = "Refinement",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub(crate) level_along: Option<u32>,
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Refinement",
+        allow_negative_numbers = true
+    )]
+    pub(crate) level_along: Option<i64>,
     /// Edges about F times as long as the local radius, instead of --level [default of F: 1]
     #[arg(long, value_name = "F", num_args = 0..=1, default_missing_value = "1",
-          conflicts_with_all = ["level", "level_along", "max_error"], value_parser = positive,
           allow_negative_numbers = true, help_heading = "Refinement")]
     pub(crate) isotropic: Option<f64>,
     /// With --isotropic: longest edge (µm)
-    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true,
-          help_heading = "Refinement")]
+    #[arg(
+        long,
+        value_name = "UM",
+        allow_negative_numbers = true,
+        help_heading = "Refinement"
+    )]
     pub(crate) max_edge: Option<f64>,
     /// With --isotropic: shortest edge (µm) that is asked for
-    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true,
-          help_heading = "Refinement")]
+    #[arg(
+        long,
+        value_name = "UM",
+        allow_negative_numbers = true,
+        help_heading = "Refinement"
+    )]
     pub(crate) min_edge: Option<f64>,
     /// With --isotropic: how many times F radii long edges along neurites may be [default: 1; with
     /// --simulation 3]
-    #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true,
-          help_heading = "Refinement")]
+    #[arg(
+        long,
+        value_name = "A",
+        allow_negative_numbers = true,
+        help_heading = "Refinement"
+    )]
     pub(crate) max_aspect: Option<f64>,
     /// What becomes of places where the surface crosses itself [default: keep; with --simulation
     /// separate]
@@ -86,28 +108,41 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, value_name = "WHICH", help_heading = "Surface")]
     pub(crate) radii: Option<RadiiArg>,
     /// Factor on the radii of neurites, as for printing in three dimensions
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR",
-          value_parser = crate::options::numbers::radius_factor, allow_negative_numbers = true,
-          help_heading = "Surface")]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        value_name = "FACTOR",
+        allow_negative_numbers = true,
+        help_heading = "Surface"
+    )]
     pub(crate) radius_factor: f64,
     #[command(flatten)]
     pub(crate) radius: RadiusArgs,
     /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 3 --radii equal-area,
     /// or an error that says where it fails
-    #[arg(long, conflicts_with_all = ["level", "level_along", "max_error", "quads"],
-          help_heading = "Crossings")]
+    #[arg(long, help_heading = "Crossings")]
     pub(crate) simulation: bool,
     /// How the soma is made
     #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
           help_heading = "Soma")]
     pub(crate) soma: SomaArg,
     /// Poisson's ratio ν of the soma's material, 0 ≤ ν < 0.5
-    #[arg(long, default_value_t = 0.3, value_name = "NU", value_parser = poisson,
-          allow_negative_numbers = true, help_heading = "Soma")]
+    #[arg(
+        long,
+        default_value_t = 0.3,
+        value_name = "NU",
+        allow_negative_numbers = true,
+        help_heading = "Soma"
+    )]
     pub(crate) poisson: f64,
     /// Factor on the soma's radius
-    #[arg(long, default_value_t = 1.0, value_name = "S", value_parser = positive,
-          allow_negative_numbers = true, help_heading = "Soma")]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        value_name = "S",
+        allow_negative_numbers = true,
+        help_heading = "Soma"
+    )]
     pub(crate) soma_scale: f64,
     /// Reference sphere [default: cube]
     #[arg(long, value_enum, value_name = "SPHERE", help_heading = "Soma")]
@@ -119,7 +154,7 @@ pub(crate) struct MeshArgs {
         allow_negative_numbers = true,
         help_heading = "Soma"
     )]
-    pub(crate) soma_level: Option<u32>,
+    pub(crate) soma_level: Option<i64>,
     #[command(flatten)]
     pub(crate) rings: RingArgs,
     /// Smooth the noise of the tracing away: half-width (µm) of what each point is averaged over; auto:
@@ -238,19 +273,12 @@ impl UnitArg {
     }
 }
 
-fn poisson(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if (0.0..0.5).contains(&number) => Ok(number),
-        _ => Err("a number from 0 to below 0.5 is needed".into()),
-    }
-}
-
-/// 0 gives what no `--smooth` gives, to its fingerprint.
 fn smooth(text: &str) -> Result<Smooth, String> {
     match text.parse() {
         _ if text == "auto" => Ok(Smooth::Auto),
+        // What no `--smooth` gives, to its fingerprint.
         Ok(0.0) => Ok(Smooth::None),
-        Ok(length) if length > 0.0 && f64::is_finite(length) => Ok(Smooth::Length(length)),
-        _ => Err("a length of 0 or more (µm) or auto is needed".into()),
+        Ok(length) => Ok(Smooth::Length(length)),
+        Err(_) => Err("a length of 0 or more (µm) or auto is needed".into()),
     }
 }

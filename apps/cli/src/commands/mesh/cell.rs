@@ -1,29 +1,27 @@
 //! One cell: read, generate, refine and write.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use neurotess::circuit::soma_center;
 use neurotess::formats::{self, ReadOptions};
-use neurotess::mesh::{self as surfaces, InUnit, Placed, Surface, SurfaceMesh, Unit, Watched};
-use neurotess::morphology::Morphology;
+use neurotess::mesh as surfaces;
 use neurotess::recipe::{
-    CellMesh, CellSurface, CrossingsReport, SeparationReport, SmoothingReport, SurfaceWarning,
-    Warning, Watch, mesh_watched,
+    CellFiles, CellMesh, CellSurface, CrossingsReport, FileSurface, PartFile, Progress,
+    SeparationReport, SmoothingReport, Stage, Warning, Watch, WrittenFiles, mesh_watched,
 };
 use serde::Serialize;
 
-use super::files::{Files, PartReport, Target, broken};
-use super::observed::Observed;
 use super::options::MeshOptions;
 use super::warning::CellWarning;
 use super::{size, table};
 use crate::io::claims::Claimed;
 use crate::io::morphologies::read_morphology;
-use crate::io::output::{OutputError, begin};
+use crate::io::output::{OutputError, begin, existing};
 use crate::io::targets::Job;
-use crate::report::{Failure, Progress, Reporter};
+use crate::report::{Failure, Progress as Bar, Reporter};
 
 /// One object of the JSON list, and one line of the log.
 #[derive(Clone, Debug, Serialize)]
@@ -32,7 +30,7 @@ pub(crate) struct CellReport {
     pub(crate) out: String,
     /// The files that were written instead of `out`, one for each type.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) parts: Vec<PartReport>,
+    pub(crate) parts: Vec<PartFile>,
     /// The file of materials.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) materials: Option<String>,
@@ -93,18 +91,16 @@ pub(crate) struct Prepared {
     meshed: CellMesh,
     read: Vec<formats::Warning>,
     seconds: Seconds,
-    /// The tracing, if a table is to tell where on it triangles are.
-    morphology: Option<Morphology>,
     /// Center of the soma in the tracing's coordinates (µm).
     pub(crate) soma_center: DVec3,
 }
 
 impl Prepared {
     /// The surface that is written.
-    pub(super) fn surface(&self) -> PlannedSurface<'_> {
+    pub(super) fn surface(&self, options: &MeshOptions) -> PlannedSurface<'_> {
         let clock = Instant::now();
         PlannedSurface {
-            surface: self.meshed.surface(),
+            surface: self.meshed.surface_for(options.files.format),
             seconds: clock.elapsed().as_secs_f64(),
         }
     }
@@ -119,7 +115,7 @@ pub(super) struct PlannedSurface<'m> {
 /// A cell in temporary files.
 pub(super) struct Made {
     pub(super) report: CellReport,
-    pub(super) files: Files,
+    pub(super) files: CellFiles,
 }
 
 /// Generates the mesh of one cell and writes it, with its table if there is to be one.
@@ -136,17 +132,22 @@ pub(super) fn mesh(
     let table = path.map(|path| begin(path, options.force)).transpose();
     let table = table.map_err(failed)?;
     let prepared = prepare(&job.input, options)?;
-    let surface = prepared.surface();
-    let to = Target::new(job, claimed);
+    let surface = prepared.surface(options);
+    let to = Target { job, claimed };
     let mut made = finish(&prepared, &surface, options, to, None, watchers)?;
-    if let (Some(path), Some(mut table)) = (path, table)
-        && let Some(morphology) = &prepared.morphology
-    {
+    if let (Some(path), Some(mut table)) = (path, table) {
+        let morphology = &prepared.meshed.morphology;
         table::write(surface.surface.surface(), morphology, table.file())
-            .map_err(|e| failed(broken(path, e)))?;
+            .map_err(|e| failed(OutputError::broken(path, std::io::Error::other(e))))?;
         made.files.add(table);
     }
     Ok(made)
+}
+
+/// Where a cell goes.
+pub(super) struct Target<'j> {
+    pub(super) job: &'j Job,
+    pub(super) claimed: Claimed,
 }
 
 /// What is informed while a cell is written.
@@ -154,7 +155,7 @@ pub(super) fn mesh(
 pub(super) struct Watchers<'t> {
     pub(super) reporter: &'t Reporter,
     /// Counts blocks of the surface.
-    pub(super) progress: Option<&'t Progress<'t>>,
+    pub(super) progress: Option<&'t Bar<'t>>,
 }
 
 /// Reads a cell and generates its coarse mesh.
@@ -172,16 +173,17 @@ pub(crate) fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, F
     let clock = Instant::now();
     let tick = || clock.elapsed().as_secs_f64();
     let watch = Watch::default().with_clock(&tick);
-    let meshed = mesh_watched(&read.morphology, &options.recipe, &watch)
+    let morphology = Arc::new(read.morphology);
+    let soma_center = soma_center(&morphology);
+    let meshed = mesh_watched(morphology, &options.recipe, &watch)
         .map_err(|e| Failure(format!("{file}: {}", Failure::from(e).0)))?;
-    seconds.soma = meshed.generated.soma_seconds;
+    seconds.soma = meshed.soma_seconds;
     let merging = meshed.merging_seconds;
     seconds.coarse = (clock.elapsed().as_secs_f64() - seconds.soma - merging).max(0.0);
     Ok(Prepared {
         file,
         meshed,
-        soma_center: soma_center(&read.morphology),
-        morphology: options.table.is_some().then_some(read.morphology),
+        soma_center,
         read: read.warnings,
         seconds,
     })
@@ -200,32 +202,12 @@ pub(super) fn finish(
     let mut seconds = prepared.seconds;
     seconds.refine = meshed.merging_seconds + planned.seconds;
     let cell_surface = &planned.surface;
-    let failed = |Failure(what)| Failure(format!("{file}: {what}"));
-    let out = to.out();
-    let watched = Watched::new(cell_surface.surface());
-    let walled = options.walls.then(|| {
-        let whole = SurfaceMesh::collect(&watched);
-        surfaces::with_walls(whole)
-    });
-    if walled.is_some() {
-        // With walls it knows no tracing any more.
-        watched
-            .check()
-            .map_err(|e| failed(Failure(e.to_string())))?;
-    }
-    let surface: &dyn Surface = match &walled {
-        Some(walled) => walled,
-        None => cell_surface.surface(),
-    };
-    let written = write(
-        surface,
-        options,
-        to,
-        world_from_cell,
-        watchers,
-        &mut seconds,
-    );
-    let written = written.map_err(failed)?;
+    let out = &*to.job.out;
+    let surface = FileSurface::new(cell_surface.surface(), &options.files, &Watch::default());
+    let surface = surface.map_err(|e| Failure(format!("{file}: {e}")))?;
+    let surface = surface.placed(world_from_cell);
+    let written = write(&surface, options, to, watchers, &mut seconds);
+    let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     let clock = Instant::now();
     let mesh = meshed.report_of(cell_surface);
     let growth = world_from_cell.map_or(1.0, |transform| transform.matrix3.determinant());
@@ -233,15 +215,13 @@ pub(super) fn finish(
     let measured = measured.map(|(volume, area)| (growth * volume, growth.cbrt().powi(2) * area));
     seconds.measure = clock.elapsed().as_secs_f64();
     let of_file = prepared.read.iter().cloned().map(Warning::File);
-    let of_walls = walled
-        .iter()
-        .filter_map(SurfaceWarning::of_walls)
-        .map(Warning::Surface);
+    let of_walls = surface.warning().map(Warning::Surface);
     let cell = CellReport {
         file: file.clone(),
         out: out.display().to_string(),
         parts: written.parts,
         materials: options
+            .files
             .materials_of(out)
             .map(|file| file.display().to_string()),
         node: None,
@@ -271,46 +251,33 @@ pub(super) fn finish(
     })
 }
 
-/// What was written into files.
-struct Written {
-    files: Files,
-    parts: Vec<PartReport>,
-    vertices: usize,
-    triangles: usize,
-    quads: usize,
-}
-
 fn write(
-    surface: &dyn Surface,
+    surface: &FileSurface<'_>,
     options: &MeshOptions,
     to: Target<'_>,
-    world_from_cell: Option<DAffine3>,
     watchers: Watchers<'_>,
     seconds: &mut Seconds,
-) -> Result<Written, Failure> {
-    let placed = world_from_cell.map(|placed| Placed::new(surface, placed));
-    let surface: &dyn Surface = placed.as_ref().map_or(surface, |placed| placed);
-    let scaled = InUnit::new(surface, options.unit);
-    let surface: &dyn Surface = match options.unit {
-        Unit::Micrometer => surface,
-        Unit::Meter => &scaled,
-    };
-
+) -> Result<WrittenFiles, Failure> {
+    let Target { job, claimed } = to;
     let clock = Instant::now();
-    size::tell(surface, options.format, to.out(), watchers.reporter)?;
-    let observed = Observed::new(surface, options, watchers.progress);
-    let (files, parts) = to
-        .write(&observed, options)
+    let tick = || clock.elapsed().as_secs_f64();
+    let count = |told: Progress| {
+        if let (Some(bar), Stage::Write) = (watchers.progress, told.stage) {
+            match told.done {
+                0 => bar.expect(told.all),
+                _ => bar.done(),
+            }
+        }
+    };
+    let watch = Watch::default().with_clock(&tick).with_progress(&count);
+    surface
+        .with(|surface| size::tell(surface, options.files.format, &job.out, watchers.reporter))?;
+    let written = surface
+        .write(&job.out, claimed.output, existing(claimed.replace), &watch)
         .map_err(|e| Failure(e.to_string()))?;
-    let pass = clock.elapsed().as_secs_f64();
-    let blocks = (observed.seconds() / rayon::current_num_threads() as f64).min(pass);
+    let pass = tick();
+    let blocks = (written.block_seconds / rayon::current_num_threads() as f64).min(pass);
     seconds.refine += blocks;
     seconds.write = pass - blocks;
-    Ok(Written {
-        files,
-        parts,
-        vertices: surface.vertex_count(),
-        triangles: surface.triangle_count(),
-        quads: surface.quad_count(),
-    })
+    Ok(written)
 }

@@ -12,10 +12,9 @@ use std::time::Instant;
 use neurotess::circuit::{Circuit, Instance};
 
 use super::args::MeshArgs;
-use super::cell::{self, NodeName, Watchers};
+use super::cell::{self, NodeName, Target, Watchers};
 use super::circuit_glb;
 use super::entry::{self, Entry};
-use super::files::Target;
 use super::messages::{summarize, tell};
 use super::options::MeshOptions;
 use super::run::MeshRun;
@@ -65,7 +64,12 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     let measure = reporter.json() || args.log.is_some();
     // No single input file, so that OUT is a folder.
     let options = MeshOptions::new(args, &Inputs::default(), measure)?;
-    let mut instance_jobs = plan(&circuit, &instances, folder, options.format.extension());
+    let mut instance_jobs = plan(
+        &circuit,
+        &instances,
+        folder,
+        options.files.format.extension(),
+    );
     for instance_job in &mut instance_jobs {
         options.complete(&mut instance_job.job);
     }
@@ -155,8 +159,9 @@ fn mesh_all(
             let entry = run.cell(&instance_job.job, record, |claimed| match &prepared {
                 Ok(prepared) => {
                     let placed = instance_job.instance.world_from_cell(prepared.soma_center);
-                    let surface = prepared.surface();
-                    let to = Target::new(&instance_job.job, claimed);
+                    let surface = prepared.surface(options);
+                    let job = &instance_job.job;
+                    let to = Target { job, claimed };
                     let written =
                         cell::finish(prepared, &surface, options, to, Some(placed), watchers);
                     written.map(|mut made| {

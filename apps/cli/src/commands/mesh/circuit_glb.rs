@@ -54,10 +54,10 @@ pub(super) fn run(
         ..Inputs::default()
     };
     let options = MeshOptions::new(args, &one, false)?;
-    if options.format != Format::Glb {
+    if options.files.format != Format::Glb {
         return usage("only GLB holds a circuit in one file: leave out --format");
     }
-    if options.parts {
+    if options.files.parts {
         return usage("--parts writes files of one cell each: leave it out, or give a folder");
     }
     existing(options.force).check(out)?;
@@ -69,7 +69,10 @@ pub(super) fn run(
     if shown.is_empty() {
         anyhow::bail!("{}: no cell to write: choose others", circuit.file);
     }
-    let surfaces: Vec<PlannedSurface<'_>> = prepared.values().map(Prepared::surface).collect();
+    let surfaces: Vec<PlannedSurface<'_>> = prepared
+        .values()
+        .map(|cell| cell.surface(&options))
+        .collect();
     let surfaces: Vec<&dyn Surface> = surfaces
         .iter()
         .map(|planned| planned.surface.surface())
@@ -80,13 +83,13 @@ pub(super) fn run(
         .map(|instance| GlbNode {
             name: name(circuit, instance),
             surface: numbers[&instance.template.0],
-            world_from_surface: options.unit.unit_from_um()
+            world_from_surface: options.files.unit.unit_from_um()
                 * instance.world_from_cell(prepared[&instance.template.0].soma_center),
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;
     let write_options = WriteOptions {
-        glb_materials: options.materials,
+        glb_materials: options.files.materials,
         ..WriteOptions::default()
     };
     write_glb(&surfaces, &nodes, &write_options, output.file()).map_err(|e| match e {

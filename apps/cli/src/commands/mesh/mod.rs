@@ -11,10 +11,7 @@ mod circuit;
 mod circuit_glb;
 mod entry;
 mod failure;
-mod files;
-mod in_memory;
 mod messages;
-mod observed;
 mod options;
 mod run;
 mod size;
@@ -36,7 +33,6 @@ use crate::report::{Log, Progress, Reporter, usage};
 pub(crate) use args::MeshArgs;
 use cell::Watchers;
 use entry::{Entry, in_order};
-pub use in_memory::MeshRecipe;
 use messages::{summarize, tell};
 use options::MeshOptions;
 use run::MeshRun;
@@ -74,8 +70,8 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     let options = MeshOptions::new(args, &inputs, measure)?;
     let named = Format::from_extension(out).ok().map(Format::extension);
-    reporter.warn_of_name(out, options.format.extension(), named);
-    let mut jobs = targets::plan(&inputs, out, options.format.extension())?;
+    reporter.warn_of_name(out, options.files.format.extension(), named);
+    let mut jobs = targets::plan(&inputs, out, options.files.format.extension())?;
     for job in &mut jobs {
         options.complete(job);
     }

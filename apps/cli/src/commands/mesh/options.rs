@@ -1,31 +1,26 @@
 //! From the command line's options to the library's.
 
-use std::path::{self, PathBuf};
+use std::path::PathBuf;
 
-use neurotess::generate::{GenerateOptions, Sides, SphereKind};
+use neurotess::generate::SphereKind;
 use neurotess::mesh::{Format, Unit};
-use neurotess::recipe::{self, Crossings, Levels, Purpose};
-use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path, RefineOptions};
+use neurotess::recipe::{
+    self, Crossings, FileOptions, Levels, NamedOptions, OptionValue, OptionsError, Radii, Spelling,
+};
+use neurotess::refine::{Caps, LodCriterion, Path};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets::{self, Job};
-use crate::report::usage;
+use crate::report::{Usage, usage};
 
 /// All that a cell's mesh and its files depend on.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshOptions {
     pub(crate) strict: bool,
     pub(crate) recipe: recipe::MeshOptions,
-    pub(crate) format: Format,
-    pub(crate) unit: Unit,
-    /// Whether walls part the soma from neurites.
-    pub(crate) walls: bool,
-    /// Whether faces have the material of their type, in formats that know materials.
-    pub(crate) materials: bool,
-    /// Whether each type gets a file of its own.
-    pub(crate) parts: bool,
+    pub(crate) files: FileOptions,
     /// Where a row for each triangle goes.
     pub(crate) table: Option<PathBuf>,
     pub(crate) force: bool,
@@ -39,22 +34,27 @@ impl MeshOptions {
     pub(crate) fn fingerprint(&self) -> String {
         let Self {
             recipe,
-            format,
-            unit,
-            walls,
-            materials,
-            parts,
+            files,
             strict: _,
             table: _,
             force: _,
             measure: _,
         } = self;
+        let FileOptions {
+            format,
+            unit,
+            walls,
+            materials,
+            parts,
+            ..
+        } = files;
         let (generate, refine) = (recipe.generate_options(), &recipe.refine);
         let lod = match recipe.levels {
             Levels::Coarse => "Coarse".to_owned(),
             Levels::Criterion(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
             Levels::Criterion(other) => format!("{other:?}"),
             Levels::Edges(rule) => format!("{rule:?}"),
+            other => format!("{other:?}"),
         };
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}");
@@ -86,84 +86,26 @@ impl MeshOptions {
         )
     }
 
-    /// Where the file of materials of a mesh is, if it has one.
-    pub(super) fn materials_of(&self, out: &path::Path) -> Option<PathBuf> {
-        let has_one = self.format == Format::Obj && self.materials;
-        has_one.then(|| out.with_extension("mtl"))
-    }
-
     /// Tells a job which files it has.
     pub(super) fn complete(&self, job: &mut Job) {
-        job.beside = self.materials_of(&job.out);
-        job.parts = self.parts;
+        job.beside = self.files.materials_of(&job.out);
+        job.parts = self.files.parts;
     }
 
     /// Checks the options together and translates them.
     pub(crate) fn new(args: &MeshArgs, inputs: &Inputs, measure: bool) -> anyhow::Result<Self> {
-        let format = format(args, inputs)?;
-        if args.quads && !format.has_quads() {
-            return usage(format!(
-                "{format} holds triangles only: leave out --quads, or write ply, obj, off or vtu"
-            ));
-        }
-        let crossings = crossings(args);
-        if crossings != CrossingsArg::Keep && args.quads {
-            return usage("merging leaves triangles only: leave out --quads or --crossings");
-        }
-        if args.walls && !format.has_regions() && !args.parts {
-            return usage(format!(
-                "{format} cannot tell walls from the membrane: leave out --walls, or write msh, msh2, poly or smesh"
-            ));
-        }
-        if args.table.is_some() && levels(args)? == Levels::Coarse && format.has_quads() {
-            return usage(format!(
-                "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
-            ));
-        }
-        let levels = levels(args)?;
-        if args.parts && is_standard(&args.out.out) {
-            return usage("--parts writes several files: give a name for them, as in -o cell.ply");
-        }
-        let has_quads = args.quads || levels == Levels::Coarse && format.has_quads();
-        if args.walls && has_quads {
-            return usage(
-                "walls are made of triangles: leave out --walls, or --quads and --level 0",
-            );
-        }
-        let mut recipe = recipe::MeshOptions::default();
-        recipe.generate = GenerateOptions {
-            equal_area: equal_area(args, levels)?,
-            ..generate_options(args)?
-        };
-        recipe.levels = levels;
-        recipe.coarse_quads = format.has_quads();
-        recipe.crossings = match crossings {
-            CrossingsArg::Keep => Crossings::Keep,
-            CrossingsArg::Separate => Crossings::Separate,
-            CrossingsArg::Merge => Crossings::Merge,
-        };
-        if args.simulation {
-            recipe.purpose = Purpose::Simulation;
-        }
-        recipe.refine = RefineOptions {
-            path: match args.path {
-                PathArg::Hermite => Path::Hermite,
-                PathArg::Linear => Path::Linear,
-            },
-            caps: match args.caps {
-                CapsArg::Round => Caps::Round,
-                CapsArg::Flat => Caps::Flat,
-            },
-            quads: args.quads,
-        };
+        let wrong = |error: OptionsError| Usage(error.told(Spelling::Flag));
+        let mut files = FileOptions::new(format(args, inputs)?);
+        files.unit = args.unit.unit();
+        (files.walls, files.materials, files.parts) = (args.walls, args.materials, args.parts);
+        let recipe = named(args).and_then(|named| named.options());
+        let recipe = recipe.map_err(wrong)?;
+        files.check(&recipe).map_err(wrong)?;
+        check_outputs(args, &files, recipe.levels)?;
         Ok(Self {
             strict: args.strict,
             recipe,
-            format,
-            unit: args.unit.unit(),
-            walls: args.walls,
-            materials: materials(args, format)?,
-            parts: args.parts,
+            files,
             table: args.table.clone(),
             force: args.out.force,
             measure,
@@ -171,91 +113,83 @@ impl MeshOptions {
     }
 }
 
-/// Whether there are materials.
-fn materials(args: &MeshArgs, format: Format) -> anyhow::Result<bool> {
-    let asked = args.materials;
-    let out = &args.out.out;
+/// Whether files can be where they are to be.
+fn check_outputs(args: &MeshArgs, files: &FileOptions, levels: Levels) -> anyhow::Result<()> {
+    let (out, format) = (&args.out.out, files.format);
+    if args.table.is_some() && levels == Levels::Coarse && format.has_quads() {
+        return usage(format!(
+            "--table counts triangles, and level 0 of {format} is quads: use --level 1, or msh"
+        ));
+    }
+    if args.parts && is_standard(out) {
+        return usage("--parts writes several files: give a name for them, as in -o cell.ply");
+    }
     match format {
-        Format::Glb if asked && args.table.is_some() => usage(
+        Format::Glb if args.materials && args.table.is_some() => usage(
             "materials part the triangles of glb by type, in another order than the rows of --table: leave out one",
         ),
-        Format::Obj if asked && is_standard(out) => usage(
+        Format::Obj if args.materials && is_standard(out) => usage(
             "standard output has no place for the file of materials: leave out --materials, or give a file",
         ),
-        Format::Obj if asked && out.extension().is_some_and(|end| end == "mtl") => usage(
+        Format::Obj if args.materials && out.extension().is_some_and(|end| end == "mtl") => usage(
             "the file of materials would have the name of the mesh: give one that ends in .obj",
         ),
-        Format::Obj | Format::Glb => Ok(asked),
-        other if asked => usage(format!(
-            "{other} knows no materials: leave out --materials, or write obj or glb"
-        )),
-        _ => Ok(false),
+        _ => Ok(()),
     }
 }
 
-fn crossings(args: &MeshArgs) -> CrossingsArg {
-    args.crossings.unwrap_or(if args.simulation {
-        CrossingsArg::Separate
-    } else {
-        CrossingsArg::Keep
-    })
-}
-
-/// Sides of the polygons around neurites, whose area is to be that of the traced circles.
-fn equal_area(args: &MeshArgs, levels: Levels) -> anyhow::Result<Option<Sides>> {
-    let usual = if args.simulation {
-        RadiiArg::EqualArea
-    } else {
-        RadiiArg::Traced
-    };
-    if args.radii.unwrap_or(usual) == RadiiArg::Traced {
-        return Ok(None);
-    }
-    match recipe::MeshOptions::sides(levels) {
-        Some(sides) => Ok(Some(sides)),
-        None => usage(
-            "--radii equal-area must know how many sides neurites get: use --level or --isotropic instead of \
-             --max-error",
-        ),
-    }
-}
-
-fn levels(args: &MeshArgs) -> anyhow::Result<Levels> {
-    let isotropic = args.isotropic.or(args.simulation.then_some(1.0));
-    let Some(radii) = isotropic else {
-        if args
-            .max_edge
-            .or(args.min_edge)
-            .or(args.max_aspect)
-            .is_some()
-        {
-            return usage("--max-edge, --min-edge and --max-aspect are for --isotropic: add it");
+/// The flags as named options, which the recipe checks.
+fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
+    let mut named = NamedOptions::default();
+    for (keyword, value) in [
+        ("level", args.level),
+        ("level_along", args.level_along),
+        ("soma_level", args.soma_level),
+    ] {
+        if let Some(value) = value {
+            named.set(keyword, &OptionValue::Whole(value))?;
         }
-        return Ok(match (args.max_error, args.level, args.level_along) {
-            (Some(error), ..) => Levels::Criterion(LodCriterion::MaxError(error as f32)),
-            (None, 0, Some(_)) => return usage("--level-along needs a --level of 1 or more"),
-            (None, 0, None) => Levels::Coarse,
-            (None, around, Some(along)) => Levels::Edges(EdgeRule::Levels { around, along }),
-            (None, level, None) => Levels::Criterion(LodCriterion::Homogeneous(level)),
-        });
-    };
-    let (least, most) = (
-        args.min_edge.unwrap_or(0.0),
-        args.max_edge.unwrap_or(f64::MAX),
-    );
-    if least > most {
-        return usage("--min-edge is longer than --max-edge");
     }
-    Ok(Levels::Edges(EdgeRule::Lengths {
-        radii: radii as f32,
-        aspect: match args.max_aspect {
-            Some(aspect) => aspect as f32,
-            None if args.simulation => recipe::SIMULATION_ASPECT,
-            None => 1.0,
-        },
-        least: least as f32,
-        most: most as f32,
-    }))
+    named.max_error = args.max_error;
+    named.isotropic = args.isotropic;
+    named.max_edge = args.max_edge;
+    named.min_edge = args.min_edge;
+    named.max_aspect = args.max_aspect;
+    named.path = Some(match args.path {
+        PathArg::Hermite => Path::Hermite,
+        PathArg::Linear => Path::Linear,
+    });
+    named.caps = Some(match args.caps {
+        CapsArg::Round => Caps::Round,
+        CapsArg::Flat => Caps::Flat,
+    });
+    named.crossings = args.crossings.map(|crossings| match crossings {
+        CrossingsArg::Keep => Crossings::Keep,
+        CrossingsArg::Separate => Crossings::Separate,
+        CrossingsArg::Merge => Crossings::Merge,
+    });
+    named.simulation = args.simulation;
+    named.soma = Some(args.soma.method());
+    named.poisson = Some(args.poisson);
+    named.soma_scale = Some(args.soma_scale);
+    named.radii = args.radii.map(|radii| match radii {
+        RadiiArg::Traced => Radii::Traced,
+        RadiiArg::EqualArea => Radii::EqualArea,
+    });
+    named.radius_factor = Some(args.radius_factor);
+    named.radius = args.radius.radius;
+    named.min_radius = args.radius.min_radius;
+    named.soma_sphere = args.soma_sphere.map(|sphere| match sphere {
+        SphereArg::Octahedron => SphereKind::Octahedron,
+        SphereArg::Cube => SphereKind::Cube,
+    });
+    let rings = args.rings.positions().into_iter();
+    named.ring = rings.map(|(index, at)| (index + 1, at)).collect();
+    named.smooth = args.smooth;
+    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
+    named.types = (!args.types.is_empty()).then(|| kinds.collect());
+    named.quads = args.quads;
+    Ok(named)
 }
 
 fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
@@ -288,45 +222,12 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
     }
 }
 
-fn generate_options(args: &MeshArgs) -> anyhow::Result<GenerateOptions> {
-    let sphere = match args.soma_sphere {
-        Some(SphereArg::Octahedron) => SphereKind::Octahedron,
-        Some(SphereArg::Cube) => SphereKind::Cube,
-        None => GenerateOptions::default().sphere,
-    };
-    let levels = match sphere {
-        SphereKind::Octahedron => 1..=5,
-        SphereKind::Cube => 2..=32,
-    };
-    if let Some(level) = args.soma_level.filter(|level| !levels.contains(level)) {
-        return usage(format!(
-            "--soma-level {level}: this sphere has levels {} to {}",
-            levels.start(),
-            levels.end()
-        ));
-    }
-    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
-    Ok(GenerateOptions {
-        soma: args.soma.method(),
-        poisson: args.poisson,
-        soma_scale: args.soma_scale,
-        radius_factor: args.radius_factor,
-        sphere,
-        sphere_level: args.soma_level,
-        rings: args.rings.positions(),
-        kinds: (!args.types.is_empty()).then(|| kinds.collect()),
-        smooth: args.smooth.unwrap_or_default(),
-        unknown_radius: args.radius.radius,
-        least_radius: args.radius.min_radius.unwrap_or(0.0),
-        ..GenerateOptions::default()
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
 
-    use neurotess::generate::Smooth;
+    use clap::Parser;
+    use neurotess::generate::{Sides, Smooth};
     use neurotess::morphology::NeuriteKind;
 
     use super::*;
@@ -337,11 +238,7 @@ mod tests {
         let mut options = MeshOptions {
             strict: false,
             recipe: recipe::MeshOptions::default(),
-            format: Format::Ply,
-            unit: Unit::Micrometer,
-            walls: false,
-            materials: false,
-            parts: false,
+            files: FileOptions::new(Format::Ply),
             table: None,
             force: false,
             measure: false,
@@ -353,7 +250,7 @@ mod tests {
              RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
         );
         options.recipe.levels = Levels::Coarse;
-        options.format = Format::Glb;
+        options.files.format = Format::Glb;
         options.recipe.generate.rings = BTreeMap::from([(1, 0.5)]);
         options.recipe.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
         assert_eq!(
@@ -363,7 +260,7 @@ mod tests {
              RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
         );
         options.recipe.levels = Levels::Criterion(LodCriterion::MaxError(0.05));
-        options.unit = Unit::Meter;
+        options.files.unit = Unit::Meter;
         let text = options.fingerprint();
         assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
@@ -380,5 +277,44 @@ mod tests {
             text.contains(", unknown_radius: Some(0.4), least_radius: 0.1 } "),
             "{text}"
         );
+    }
+    /// The options alone, without the program around them.
+    #[derive(Debug, Parser)]
+    struct Options {
+        #[command(flatten)]
+        args: MeshArgs,
+    }
+
+    fn of(flags: &[&str]) -> Result<recipe::MeshOptions, String> {
+        let words = ["mesh", "-", "--out=-", "--format=ply"].into_iter();
+        let Options { args } = Options::try_parse_from(words.chain(flags.iter().copied()))
+            .map_err(|e| e.to_string())?;
+        let options = MeshOptions::new(&args, &Inputs::default(), false);
+        options.map(|o| o.recipe).map_err(|e| format!("{e:#}"))
+    }
+
+    #[test]
+    fn the_library_has_the_same_defaults() {
+        let of = |flags: &[&str]| of(flags).expect("options");
+        let default = recipe::MeshOptions::default;
+        assert_eq!(of(&[]), default());
+        assert_eq!(of(&["--level=0"]), default().with_level(0));
+        assert_eq!(of(&["--quads"]), default().with_quads(true));
+        assert_eq!(of(&["--simulation"]), recipe::MeshOptions::simulation());
+    }
+
+    #[test]
+    fn wrong_options_are_told_with_their_flags() {
+        let told = |flags: &[&str]| of(flags).expect_err("wrong");
+        assert_eq!(
+            told(&["--level=99"]),
+            "invalid value '99' for '--level': 99 is not in 0..=64"
+        );
+        let both = told(&["--level=4", "--max-error=1"]);
+        assert_eq!(both, "'--level' cannot be used with '--max-error'");
+        let needs = told(&["--max-edge=2"]);
+        assert!(needs.starts_with("--max-edge, --min-edge"), "{needs}");
+        let radii = told(&["--max-error=1", "--radii=equal-area"]);
+        assert!(radii.starts_with("--radii equal-area must know"), "{radii}");
     }
 }

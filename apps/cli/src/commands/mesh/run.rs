@@ -82,7 +82,7 @@ impl MeshRun<'_> {
             Ok(Made { report, files }) => {
                 let cell = Box::new(report);
                 if self.records
-                    && let Err(e) = record.add(job, &files.recorded(job))
+                    && let Err(e) = record.add(job, &files.meshes(&job.out))
                 {
                     let name = record::NAME;
                     self.reporter.warning(&format!(

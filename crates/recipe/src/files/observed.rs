@@ -1,63 +1,61 @@
-//! A surface that measures how long its blocks take, and counts them for the progress bar.
+//! A surface that measures how long its blocks take, and counts them for whoever is told how far writing is.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::time::Instant;
 
-use neurotess::mesh::{Faces, Format, Region, Soundness, Surface, SurfaceVertex, Unit};
+use neurotess_mesh::{Faces, Format, Region, Soundness, Surface, SurfaceVertex, Unit};
 
-use super::options::MeshOptions;
-use crate::report::Progress;
+use super::options::FileOptions;
+use crate::{Stage, Watch};
 
 /// A surface and a clock for its blocks.
-pub(crate) struct Observed<'a> {
+pub(super) struct Observed<'a> {
     surface: &'a dyn Surface,
-    progress: Option<&'a Progress<'a>>,
+    watch: &'a Watch<'a>,
     nanoseconds: AtomicU64,
-    /// Blocks that the progress bar still expects: of some formats more are made than is foreseen.
-    expected: AtomicUsize,
+    made: AtomicUsize,
+    /// Blocks in all, about: of some formats more are made than is foreseen.
+    expected: usize,
 }
 
 impl<'a> Observed<'a> {
-    /// Measures a surface that goes into a file; the progress bar, if there is one, counts its blocks.
-    pub(crate) fn new(
+    /// Measures a surface that goes into files.
+    pub(super) fn new(
         surface: &'a dyn Surface,
-        options: &MeshOptions,
-        progress: Option<&'a Progress<'a>>,
+        options: &FileOptions,
+        watch: &'a Watch<'a>,
     ) -> Self {
         let (vertices, faces) = passes(options);
         let expected = vertices * surface.vertex_blocks() + faces * surface.face_blocks();
-        if let Some(progress) = progress {
-            progress.expect(expected);
-        }
+        watch.tell(Stage::Write, 0, expected);
         Self {
             surface,
-            progress,
+            watch,
             nanoseconds: AtomicU64::new(0),
-            expected: AtomicUsize::new(expected),
+            made: AtomicUsize::new(0),
+            expected,
         }
     }
 
     /// Seconds that blocks took, summed over all threads.
-    pub(crate) fn seconds(&self) -> f64 {
+    pub(super) fn seconds(&self) -> f64 {
         self.nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9
     }
 
     fn timed(&self, make: impl FnOnce()) {
-        let clock = Instant::now();
+        let start = self.watch.seconds();
         make();
-        let nanoseconds = u64::try_from(clock.elapsed().as_nanos()).unwrap_or(u64::MAX);
-        self.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
-        let one_less = |left: usize| left.checked_sub(1);
-        let order = Ordering::Relaxed;
-        let foreseen = self.expected.fetch_update(order, order, one_less).is_ok();
-        if let Some(progress) = self.progress.filter(|_| foreseen) {
-            progress.done();
+        let nanoseconds = (self.watch.seconds() - start) * 1e9;
+        self.nanoseconds
+            .fetch_add(nanoseconds as u64, Ordering::Relaxed);
+        let made = self.made.fetch_add(1, Ordering::Relaxed) + 1;
+        if made <= self.expected {
+            self.watch.tell(Stage::Write, made, self.expected);
         }
     }
 }
 
 /// How often the blocks of vertices and of faces are made, about.
-fn passes(options: &MeshOptions) -> (usize, usize) {
+fn passes(options: &FileOptions) -> (usize, usize) {
     let (vertices, faces) = match options.format {
         Format::Glb if options.materials => (1, 2),
         Format::Msh | Format::Msh2 => (4, 2),

@@ -1,0 +1,86 @@
+//! Meshes for surfaces and for solvers.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use neurotess_mesh::{SurfaceMesh, measure_surface};
+use neurotess_recipe::{
+    Crossings, MeshError, MeshOptions, Spelling, Watch, mesh, mesh_from, mesh_watched,
+};
+
+use crate::{SMALL, cell};
+
+fn triangles(options: &MeshOptions) -> usize {
+    let made = mesh(&cell(SMALL), options).expect("meshed");
+    let report = made.report();
+    assert!(report.closed && report.components == 1);
+    SurfaceMesh::collect(made.surface().surface())
+        .faces
+        .triangles
+        .len()
+}
+
+#[neurotess_testing::test]
+fn finer_levels_have_more_triangles_and_quads_fewer() {
+    let usual = MeshOptions::default;
+    assert_eq!(triangles(&usual()), triangles(&usual().with_level(4)));
+    assert!(triangles(&usual().with_level(8)) > triangles(&usual()));
+    let coarse = usual().with_level(2);
+    assert!(triangles(&coarse.clone().with_quads(true)) < triangles(&coarse) / 2);
+}
+
+/// Thick, thin and back to where it began; to and fro on a line: what their tubes hold, however it is meshed.
+#[neurotess_testing::test]
+fn paths_that_turn_back_have_their_volume_however_they_are_meshed() {
+    let back = "1 2 0 5 0 8.45 -1\n2 2 0 0 0 2.29 1\n3 2 0 5 0 0.75 2\n4 2 0 -25 0 0.75 3\n5 2 0 -60 0 0.75 4\n";
+    let to_and_fro = "1 3 0 0 0 2 -1\n2 3 10 0 0 2 1\n3 3 5 0.05 0 2 2\n4 3 40 0 0 2 3\n";
+    let merged = MeshOptions::default()
+        .with_level(8)
+        .with_crossings(Crossings::Merge);
+    for (text, volume) in [(back, 1900.0), (to_and_fro, 503.0)] {
+        // What is moved apart goes around itself, which is longer.
+        for (options, most) in [
+            (MeshOptions::default(), 1.1),
+            (merged.clone(), 1.1),
+            (MeshOptions::simulation(), 1.25),
+        ] {
+            let made = mesh(&cell(text), &options).expect("meshed");
+            let surface = made.surface();
+            let report = made.report_of(&surface);
+            assert!(report.closed && report.components == 1);
+            let share = measure_surface(surface.surface()).volume / volume;
+            assert!((0.9..most).contains(&share), "{options:?}: {share}");
+        }
+    }
+}
+
+#[neurotess_testing::test]
+fn a_coarse_mesh_that_is_there_gives_the_same() {
+    let cell = Arc::new(cell(SMALL));
+    for options in [MeshOptions::default(), MeshOptions::simulation()] {
+        let made = mesh(&*cell, &options).expect("meshed");
+        let there = Arc::clone(&made.generated);
+        let again = mesh_from(there, cell.clone(), &options, &Watch::default()).expect("meshed");
+        let [made, again] = [made, again].map(|m| SurfaceMesh::collect(m.surface().surface()));
+        assert_eq!(made, again);
+    }
+}
+
+#[neurotess_testing::test]
+fn what_is_stopped_or_empty_says_so() {
+    let stopped = AtomicBool::new(true);
+    let watch = Watch::stopped_by(&stopped);
+    for options in [MeshOptions::default(), MeshOptions::simulation()] {
+        let made = mesh_watched(Arc::new(cell(SMALL)), &options, &watch);
+        assert_eq!(made.err(), Some(MeshError::Stopped));
+    }
+    let nothing = MeshOptions::default()
+        .with_soma(neurotess_generate::SomaMethod::None)
+        .with_types([neurotess_morphology::NeuriteKind(9)]);
+    let error = mesh(&cell(SMALL), &nothing).err().expect("nothing is left");
+    assert_eq!(
+        error.told(Spelling::Flag),
+        "nothing is left to mesh: check --types and --soma"
+    );
+    assert!(error.told(Spelling::Keyword).ends_with("types and soma"));
+}
