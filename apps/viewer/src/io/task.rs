@@ -3,9 +3,9 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::io::background::spawn;
 
@@ -20,6 +20,8 @@ pub(crate) struct Progress {
     pub(crate) done: Arc<AtomicUsize>,
     /// Number of all steps; 0 if that is not known yet.
     pub(crate) all: Arc<AtomicUsize>,
+    /// What it does just now, where that changes.
+    doing: Arc<Mutex<&'static str>>,
     /// Set to cancel it.
     pub(crate) canceled: Arc<AtomicBool>,
 }
@@ -31,8 +33,14 @@ impl Progress {
             steps,
             done: Arc::default(),
             all: Arc::new(AtomicUsize::new(all)),
+            doing: Arc::default(),
             canceled: Arc::default(),
         }
+    }
+
+    /// Notes what it does just now.
+    pub(crate) fn note(&self, doing: &'static str) {
+        *self.doing.lock().unwrap_or_else(PoisonError::into_inner) = doing;
     }
 
     /// Cancels the task.
@@ -48,9 +56,13 @@ impl Progress {
     /// What it does and its progress, as text.
     pub(crate) fn text(&self) -> String {
         let (what, steps) = (&self.what, self.steps);
-        match [&self.done, &self.all].map(|n| n.load(Ordering::Relaxed)) {
+        let counted = match [&self.done, &self.all].map(|n| n.load(Ordering::Relaxed)) {
             [_, 0 | 1] => what.clone(),
             [done, all] => format!("{what}: {done} of {all} {steps}"),
+        };
+        match *self.doing.lock().unwrap_or_else(PoisonError::into_inner) {
+            "" => counted,
+            doing => format!("{counted} ({doing})"),
         }
     }
 
@@ -159,6 +171,8 @@ mod tests {
             (progress.text().as_str(), progress.share()),
             ("counting: 1 of 4 steps", 0.25)
         );
+        progress.note("by hand");
+        assert_eq!(progress.text(), "counting: 1 of 4 steps (by hand)");
         let task = Task::start(
             progress,
             || {},

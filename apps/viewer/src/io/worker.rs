@@ -21,6 +21,7 @@ use crate::model::document::{SomaEdit, SourceId};
 use crate::model::ids::CircuitId;
 use crate::model::markers::{MarkerContent, MarkerSource};
 use crate::model::meshes::ReadMesh;
+use crate::model::save::Written;
 use crate::model::sources::{Meshed, Source, Stale};
 
 /// A result of background work.
@@ -47,7 +48,7 @@ pub(crate) enum Message {
     /// Files are no longer watched, for this reason.
     NotWatched(String),
     /// Saving ended: with this message, or with an error.
-    Saved(Result<String, String>),
+    Saved(Result<Written, String>),
 }
 
 /// A file that is watched, and when it was last written.
@@ -60,7 +61,7 @@ pub(crate) struct Worker {
     receiver: Receiver<Message>,
     wake: Arc<dyn Fn() + Send + Sync>,
     loading: Option<Task<()>>,
-    saving: Option<Task<String>>,
+    saving: Option<Task<Written>>,
     reloading: Vec<(SourceId, Task<Source>)>,
     remeshing: Option<(MeshRequest, Task<Meshed>)>,
     marking: Option<(MarkerSource, Task<MarkerContent>)>,
@@ -302,7 +303,7 @@ impl Worker {
     pub(crate) fn save(
         &mut self,
         progress: Progress,
-        work: impl FnOnce(&Progress) -> Result<String, String> + Send + 'static,
+        work: impl FnOnce(&Progress) -> Result<Written, String> + Send + 'static,
     ) {
         self.saving = Some(self.start(progress, work));
     }

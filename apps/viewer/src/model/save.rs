@@ -5,18 +5,27 @@ use std::sync::Arc;
 
 use neurotess::mesh::Format;
 use neurotess::plot::Plot;
-use neurotess::refine::LodCriterion;
+use neurotess::recipe::{self, FileOptions, Levels, Purpose};
+use neurotess::refine::RefineOptions;
 
 use crate::model::settings::Settings;
 
-/// The level of detail that a mesh is written with.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum MeshLod {
-    /// The panel's level of detail, in the current view if it depends on that.
-    #[default]
-    AsShown,
-    /// A criterion that needs no view; none: the coarse quads.
-    Fixed(Option<LodCriterion>),
+/// What is said once something is saved.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Written {
+    /// What was saved.
+    pub(crate) status: String,
+    /// What was not saved as asked for, or is in doubt: of what, and why.
+    pub(crate) remarks: Vec<(String, String)>,
+}
+
+impl From<String> for Written {
+    fn from(status: String) -> Self {
+        Self {
+            status,
+            remarks: Vec::new(),
+        }
+    }
 }
 
 /// What is to be saved.
@@ -34,27 +43,79 @@ pub enum SaveRequest {
     Plot(PathBuf, Arc<Plot>),
 }
 
-/// How meshes are written.
+/// How neurons are meshed and written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshOptions {
     /// A file for one mesh, a folder for several.
     pub out: PathBuf,
-    /// Format of the files.
-    pub format: Format,
-    /// The level of detail.
-    pub lod: MeshLod,
-    /// Whether there are quads instead of triangles.
-    pub quads: bool,
-    /// Whether the path between points is straight.
-    pub linear: bool,
-    /// Whether neurites end in disks instead of half spheres.
-    pub flat: bool,
+    /// What meshes are made by. The soma is each neuron's own.
+    pub recipe: recipe::MeshOptions,
+    /// Whether levels are those of the current picture, instead of the recipe's.
+    pub as_shown: bool,
+    /// Format, unit, walls, materials, parts.
+    pub files: FileOptions,
     /// Whether neurons are where the window shows them instead of where they were traced.
     pub placed: bool,
     /// Whether all neurons that are shown are written instead of the selected ones.
     pub all: bool,
     /// Whether files may be replaced.
     pub replace: bool,
+}
+
+impl MeshOptions {
+    /// Surfaces of level 4 of all neurons that show, as traced.
+    pub fn new(out: impl Into<PathBuf>, format: Format) -> Self {
+        Self {
+            out: out.into(),
+            recipe: recipe::MeshOptions::default(),
+            as_shown: false,
+            files: FileOptions::new(format),
+            placed: false,
+            all: true,
+            replace: false,
+        }
+    }
+
+    /// Sets what meshes are for, with what follows from that. Courses and ends stay.
+    pub(crate) fn set_purpose(&mut self, purpose: Purpose) {
+        let refine = self.recipe.refine;
+        self.recipe = match purpose {
+            Purpose::Surface => recipe::MeshOptions::default(),
+            Purpose::Simulation => recipe::MeshOptions::simulation(),
+        };
+        self.recipe.refine = RefineOptions {
+            quads: false,
+            ..refine
+        };
+        self.as_shown = false;
+    }
+
+    /// Whether quads can be had: formats hold them, and nothing is merged.
+    pub(crate) fn can_have_quads(&self) -> bool {
+        self.files.format.has_quads() && !self.recipe.merges()
+    }
+
+    /// Whether walls between soma and neurites can be had.
+    pub(crate) fn can_have_walls(&self) -> bool {
+        let format = self.files.format;
+        let coarse = self.recipe.levels == Levels::Coarse && !self.as_shown;
+        let has_quads = self.recipe.refine.quads || coarse && format.has_quads();
+        (format.has_regions() || self.files.parts) && !(has_quads && self.can_have_quads())
+    }
+
+    /// Whether faces can have the materials of their types.
+    pub(crate) fn can_have_materials(&self) -> bool {
+        matches!(self.files.format, Format::Obj | Format::Glb)
+    }
+
+    /// The same without what cannot be had.
+    pub(crate) fn fitting(&self) -> Self {
+        let mut options = self.clone();
+        options.recipe.refine.quads &= self.can_have_quads();
+        options.files.walls &= self.can_have_walls();
+        options.files.materials &= self.can_have_materials();
+        options
+    }
 }
 
 /// A picture.
@@ -116,17 +177,7 @@ impl SaveForm {
     pub(crate) fn new(settings: &Settings) -> Self {
         Self {
             mesh_out: String::new(),
-            mesh: MeshOptions {
-                out: PathBuf::new(),
-                format: Format::Ply,
-                lod: MeshLod::Fixed(Some(LodCriterion::Homogeneous(4))),
-                quads: false,
-                linear: false,
-                flat: false,
-                placed: false,
-                all: true,
-                replace: false,
-            },
+            mesh: MeshOptions::new("", Format::Ply),
             picture_out: String::new(),
             picture: PictureFile {
                 out: PathBuf::new(),
@@ -149,7 +200,7 @@ impl SaveForm {
     pub(crate) fn propose(&mut self, folder: &Path, name: &str) {
         let at = |name: String| folder.join(name).display().to_string();
         let proposed = [
-            at(format!("{name}.{}", self.mesh.format.extension())),
+            at(format!("{name}.{}", self.mesh.files.format.extension())),
             at(format!("{name}.png")),
             at(format!("{name}_film.png")),
         ];
@@ -181,10 +232,32 @@ mod tests {
             ["/data/a.ply", "/data/a.png"]
         );
         form.picture_out = "/data/figure.png".into();
-        form.mesh.format = Format::Msh2;
+        form.mesh.files.format = Format::Msh2;
         form.propose(folder, "b");
         assert_eq!(form.mesh_out, "/data/b.msh");
         assert_eq!(form.picture_out, "/data/figure.png");
         assert_eq!(form.film_out, "/data/b_film.png");
+    }
+    #[test]
+    fn what_cannot_be_had_is_left_out() {
+        let mut options = MeshOptions::new("a.ply", Format::Ply);
+        options.recipe.refine.quads = true;
+        options.files.materials = true;
+        assert!(options.fitting().recipe.refine.quads && !options.fitting().files.materials);
+        options.files.format = Format::Glb;
+        assert!(!options.fitting().recipe.refine.quads && options.fitting().files.materials);
+        options.files.walls = true;
+        assert!(!options.fitting().files.walls);
+        options.files.parts = true;
+        assert!(options.fitting().files.walls);
+        for format in Format::ALL {
+            options.files.format = format;
+            options.set_purpose(Purpose::Simulation);
+            for levels in [options.recipe.levels, Levels::Coarse] {
+                options.recipe.levels = levels;
+                let fitting = options.fitting();
+                assert_eq!(fitting.files.check(&fitting.recipe), Ok(()), "{format}");
+            }
+        }
     }
 }

@@ -43,6 +43,37 @@ pub(crate) fn mesh_file(path: &Path, format: Format) -> PathBuf {
     named(path, format.extension(), is_mesh)
 }
 
+/// The files of one mesh, or those that may be parts of it.
+fn files_of_mesh(options: &MeshOptions) -> Vec<PathBuf> {
+    let file = mesh_file(&options.out, options.files.format);
+    let mut files: Vec<PathBuf> = options
+        .fitting()
+        .files
+        .materials_of(&file)
+        .into_iter()
+        .collect();
+    if !options.files.parts {
+        files.push(file);
+        return files;
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let beside = fs::read_dir(match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    });
+    let stem = format!(
+        "{}_",
+        file.file_stem().unwrap_or_default().to_string_lossy()
+    );
+    let is_part = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(&stem) && path.extension() == file.extension()
+    };
+    let beside = beside.into_iter().flatten().flatten();
+    files.extend(beside.map(|entry| entry.path()).filter(is_part));
+    files
+}
+
 /// The folder of several meshes: without the ending of a file that is named for them.
 pub(crate) fn mesh_folder(path: &Path) -> PathBuf {
     match is_mesh(path) {
@@ -105,12 +136,10 @@ impl State {
             Command::SaveSession(path)
             | Command::SavePalette(path)
             | Command::SavePlot(_, path) => vec![path.clone()],
-            Command::SaveMeshes(meshes) if !meshes.replace => {
-                vec![match self.mesh_count(meshes.all) {
-                    1 => mesh_file(&meshes.out, meshes.format),
-                    _ => mesh_folder(&meshes.out),
-                }]
-            }
+            Command::SaveMeshes(meshes) if !meshes.replace => match self.mesh_count(meshes.all) {
+                1 => files_of_mesh(meshes),
+                _ => vec![mesh_folder(&meshes.out)],
+            },
             Command::SavePicture(picture) if !picture.replace => vec![picture_file(&picture.out)],
             Command::SaveFilm(film) if !film.picture.replace => {
                 let over_time = film.time.is_some() && self.playback.facts.is_some();

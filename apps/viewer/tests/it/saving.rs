@@ -5,14 +5,18 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::{NodeT, Queryable};
+use neurotess::mesh::{Format, check, read};
+use neurotess::recipe::{Crossings, MeshOptions};
 use neurotess::synth::Kind;
 use neurotess_testing::note;
 use neurotess_viewer::Command;
-use neurotess_viewer::command::Edit;
+use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::Look;
 use neurotess_viewer::save::PictureFile;
 
-use crate::common::{Window, gpu, run, run_undrawn, settle, state, undrawn, viewer, with_samples};
+use crate::common::{
+    Window, gpu, run, run_undrawn, settle, snapshot, state, undrawn, viewer, with_samples,
+};
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
@@ -134,4 +138,43 @@ fn saved_pictures_have_the_axes_that_show() {
     };
     run_undrawn(&mut window, Edit::SetLook(Box::new(look)));
     assert_ne!(picture(&mut window, "without.png"), with);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn meshes_for_simulation_are_saved_by_the_panel_and_stop() {
+    let mut window = with_samples(&[Kind::Granule]);
+    let folder = tempfile::tempdir().expect("a folder");
+    run(&mut window, Command::Show(Tab::Save));
+    window.get_by_label("simulation").click();
+    window.run_steps(3);
+    let form = &mut state(&mut window).save;
+    assert!(form.mesh.recipe == MeshOptions::simulation());
+    form.mesh.files.format = Format::Msh;
+    form.mesh.files.walls = true;
+    // The folder has another name in each run.
+    form.mesh_out = "/granule.msh".into();
+    window.run_steps(2);
+    snapshot(&mut window, "save_simulation");
+    let out = folder.path().join("granule.msh");
+    state(&mut window).save.mesh_out = out.display().to_string();
+    window.run_steps(2);
+    window.get_by_label("Save 1 mesh").click();
+    wait(&mut window, "the mesh", |w| {
+        state(w).status.contains("faces")
+    });
+    let checked = check(&read(&out).expect("a mesh"));
+    assert_eq!(checked.self_intersections, 0);
+    fs::remove_file(&out).expect("there");
+
+    let mut merged = state(&mut window).save.mesh.clone();
+    merged.out = out;
+    merged.recipe = MeshOptions::default()
+        .with_level(32)
+        .with_crossings(Crossings::Merge);
+    state(&mut window).run(Command::SaveMeshes(merged));
+    wait(&mut window, "merging", |window| {
+        window.query_by_label_contains("merging").is_some()
+    });
+    stop(&mut window, "while merging");
+    assert!(names(folder.path()).is_empty());
 }

@@ -1,23 +1,23 @@
-//! Meshes of neurons.
+//! Meshes of neurons, by the recipe of the library: the same as the command line makes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use glam::DAffine3;
-use neurotess::generate::Generated;
-use neurotess::mesh::{self, Placed, Surface};
-use neurotess::output::write_whole;
-use neurotess::refine::{
-    Caps, CoarseSurface, Lod, LodCriterion, Path as Course, RefineOptions, Refinement,
+use glam::{DAffine3, DVec3};
+use neurotess::generate::{GenerateOptions, Generated};
+use neurotess::morphology::Morphology;
+use neurotess::recipe::{
+    self, CellMesh, Levels, SaveError, SaveOptions, Saved, Spelling, Stage, Warning, Watch,
+    mesh_from, mesh_watched,
 };
 use neurotess::render::{CullView, Placement};
 
-use super::existing;
-use crate::io::task::Progress;
+use super::{Written, existing};
+use crate::io::task::{Progress, caught};
 use crate::model::document::Detail;
 use crate::model::numbers::grouped;
-use crate::model::save::{MeshLod, MeshOptions};
+use crate::model::save::MeshOptions;
 use crate::model::targets::{file_name, mesh_file, mesh_folder};
 use crate::model::view::View;
 
@@ -25,49 +25,96 @@ use crate::model::view::View;
 #[derive(Clone)]
 pub(crate) struct MeshPlan {
     pub(crate) name: String,
+    /// The tracing as it is drawn.
+    pub(crate) morphology: Arc<Morphology>,
+    /// What is drawn, and what it was made by.
     pub(crate) generated: Arc<Generated>,
+    pub(crate) generate: GenerateOptions,
     pub(crate) placement: Placement,
 }
 
-/// Writes meshes.
+/// The view that levels may depend on.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenFrom {
+    pub(crate) view: View,
+    pub(crate) detail: Detail,
+    /// Pixels.
+    pub(crate) height: f64,
+}
+
+/// Meshes and writes neurons. One that fails is told, and keeps no other from being written.
+///
+/// # Errors
+/// Nothing was written, or it was stopped.
 pub(crate) fn meshes(
     plans: &[MeshPlan],
     options: &MeshOptions,
-    view: &View,
-    detail: &Detail,
-    height: f64,
+    seen_from: &SeenFrom,
     progress: &Progress,
-) -> Result<String, String> {
+) -> Result<Written, String> {
+    let options = &options.fitting();
     let files = mesh_files(plans, options)?;
-    for file in &files {
-        if !options.replace && file.exists() {
-            return Err(format!(
-                "{} exists: allow it to be replaced",
-                file.display()
-            ));
-        }
-    }
-    let (mut faces, mut written) = (0, 0);
+    let (mut faces, mut written) = (0, Vec::new());
+    let mut remarks = Vec::new();
     for (plan, file) in plans.iter().zip(&files) {
+        let stopped = || format!("stopped after {} of {} meshes", written.len(), files.len());
         if progress.is_canceled() {
-            return Err(format!("stopped after {written} of {} meshes", files.len()));
+            return Err(stopped());
         }
-        faces += write_mesh(plan, options, view, detail, height, file)?;
-        written += 1;
-        progress.done.fetch_add(1, Ordering::Relaxed);
+        let one = Job {
+            plan,
+            options,
+            seen_from,
+            progress,
+            is_alone: files.len() == 1,
+        };
+        match caught(|| one.save(file)) {
+            Ok((saved, said)) => {
+                faces += saved.triangles + saved.quads;
+                written.extend(saved.files.first().cloned());
+                remarks.extend(said.into_iter().map(|said| (plan.name.clone(), said)));
+            }
+            Err(_) if progress.is_canceled() => return Err(stopped()),
+            Err(why) if files.len() == 1 => return Err(why),
+            Err(why) => remarks.push((plan.name.clone(), format!("not saved: {why}"))),
+        }
+        if files.len() > 1 {
+            progress.done.fetch_add(1, Ordering::Relaxed);
+        }
     }
-    let what = match &files[..] {
-        [one] => one.display().to_string(),
-        many => format!("{} meshes in {}", many.len(), options.out.display()),
+    let what = match (&written[..], &files[..]) {
+        ([], _) => return Err(failures(&remarks)),
+        ([one], [_]) => one.display().to_string(),
+        (some, all) => {
+            let folder = mesh_folder(&options.out);
+            let of_all = match all.len() - some.len() {
+                0 => String::new(),
+                _ => format!(" of {}", all.len()),
+            };
+            format!("{}{of_all} meshes in {}", some.len(), folder.display())
+        }
     };
-    Ok(format!("Saved {what}: {} faces", grouped(faces as u64)))
+    Ok(Written {
+        status: format!("Saved {what}: {} faces", grouped(faces as u64)),
+        remarks,
+    })
+}
+
+fn failures(remarks: &[(String, String)]) -> String {
+    let first = remarks.first();
+    let first = first.map_or(String::new(), |(name, why)| format!("{name}: {why}"));
+    match remarks.len() {
+        0 | 1 => first,
+        more => format!("{first}, and {} more", more - 1),
+    }
 }
 
 /// The file of each plan. Equal names get a number.
 fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>, String> {
-    let extension = options.format.extension();
+    let format = options.files.format;
+    let extension = format.extension();
     if let [_] = plans {
-        return Ok(vec![mesh_file(&options.out, options.format)]);
+        return Ok(vec![mesh_file(&options.out, format)]);
     }
     if plans.is_empty() {
         return Err("nothing is selected: select neurons, or save all that show".into());
@@ -87,169 +134,101 @@ fn mesh_files(plans: &[MeshPlan], options: &MeshOptions) -> Result<Vec<PathBuf>,
     Ok(files)
 }
 
-fn write_mesh(
-    plan: &MeshPlan,
-    options: &MeshOptions,
-    view: &View,
-    detail: &Detail,
-    height: f64,
-    file: &Path,
-) -> Result<usize, String> {
-    let coarse = &plan.generated.mesh;
-    let refine = RefineOptions {
-        path: if options.linear {
-            Course::Linear
-        } else {
-            Course::Hermite
-        },
-        caps: if options.flat {
-            Caps::Flat
-        } else {
-            Caps::Round
-        },
-        quads: options.quads && options.format.has_quads(),
-    };
-    let (refinement, quads);
-    let surface: &dyn Surface = match mesh_lod(options.lod, plan, view, detail, height) {
-        Some(lod) => {
-            refinement = Refinement::new(coarse, lod, &refine);
-            &refinement
-        }
-        None => {
-            quads = CoarseSurface::new(coarse, options.format.has_quads());
-            &quads
-        }
-    };
-    let moved = options.placed.then(|| {
-        let p = plan.placement;
-        let linear =
-            DAffine3::from_quat(p.rotation) * DAffine3::from_scale(glam::DVec3::splat(p.scale));
-        Placed::new(surface, DAffine3::from_translation(p.translation) * linear)
-    });
-    let surface: &dyn Surface = moved.as_ref().map_or(surface, |moved| moved);
-    write_whole(file, existing(options.replace), |to| {
-        mesh::write(surface, options.format, to).map_err(std::io::Error::other)
-    })
-    .map_err(|e| e.to_string())?;
-    Ok(surface.triangle_count() + surface.quad_count())
+/// A cell that is meshed and written.
+struct Job<'a> {
+    plan: &'a MeshPlan,
+    options: &'a MeshOptions,
+    seen_from: &'a SeenFrom,
+    progress: &'a Progress,
+    /// Whether its blocks are counted, since there are no other cells to count.
+    is_alone: bool,
 }
 
-fn mesh_lod(
-    lod: MeshLod,
-    plan: &MeshPlan,
-    view: &View,
-    detail: &Detail,
-    height: f64,
-) -> Option<Lod<'static>> {
-    match lod {
-        MeshLod::Fixed(criterion) => {
-            let limited = match criterion? {
-                LodCriterion::Homogeneous(level) => LodCriterion::Homogeneous(level.clamp(1, 64)),
-                LodCriterion::MaxError(error) => LodCriterion::MaxError(error.max(1e-4)),
-                other => other,
-            };
-            Some(limited.into())
+impl Job<'_> {
+    /// Saves it; also gives what is to be said of the mesh.
+    fn save(&self, file: &std::path::Path) -> Result<(Saved, Vec<String>), String> {
+        let tell = |told: recipe::Progress| self.tell(told);
+        let watch = Watch::stopped_by(&self.progress.canceled).with_progress(&tell);
+        let cell = self.mesh(&watch)?;
+        let mut to = SaveOptions::new(self.options.files.format);
+        to.files = self.options.files;
+        to.existing = existing(self.options.replace);
+        let placement = &self.plan.placement;
+        to.world_from_cell = self.options.placed.then(|| world_from_cell(placement));
+        let saved = cell.save_with(file, &to, &watch).map_err(|e| match e {
+            SaveError::Options(e) => e.told(Spelling::Label),
+            e => e.to_string(),
+        })?;
+        // What is to be said of the coarse mesh is said where the tracing was opened.
+        let warnings = cell.report().warnings.into_iter();
+        let of_surface = warnings.filter(|warning| matches!(warning, Warning::Surface(_)));
+        let said = of_surface.map(|warning| warning.to_string());
+        let of_walls = saved.warning.as_ref().map(ToString::to_string);
+        let said = said.chain(of_walls).collect();
+        Ok((saved, said))
+    }
+
+    fn mesh(&self, watch: &Watch<'_>) -> Result<CellMesh, String> {
+        let MeshPlan {
+            morphology,
+            generated,
+            generate,
+            ..
+        } = self.plan;
+        let options = self.recipe();
+        // What is drawn is what is asked for, unless branches are moved apart or rings have other radii.
+        let morphology = Arc::clone(morphology);
+        let made = match options.generate_options() == *generate {
+            true => mesh_from(Arc::clone(generated), morphology, &options, watch),
+            false => mesh_watched(morphology, &options, watch),
+        };
+        made.map_err(|e| e.told(Spelling::Label))
+    }
+
+    /// The options with the soma of the neuron, and with the levels of the picture if these are asked for.
+    fn recipe(&self) -> recipe::MeshOptions {
+        let mut options = self.options.recipe.clone();
+        options.generate = GenerateOptions {
+            equal_area: options.generate.equal_area,
+            ..self.plan.generate.clone()
+        };
+        if !self.options.as_shown {
+            return options;
         }
-        MeshLod::AsShown => {
-            let camera = view.camera();
-            let placement = &plan.placement;
-            let cull_view = CullView::new(&camera, 1, height.max(1.0) as u32, 1e-3);
-            let local = cull_view.local_view(placement, plan.generated.mesh.origin);
-            Some(Lod::seen_from(detail.lod().scaled(placement.scale), local))
+        let SeenFrom {
+            view,
+            detail,
+            height,
+        } = *self.seen_from;
+        let placement = &self.plan.placement;
+        let cull_view = CullView::new(&view.camera(), 1, height.max(1.0) as u32, 1e-3);
+        options.with_levels(Levels::Seen {
+            criterion: detail.lod().scaled(placement.scale),
+            view: cull_view.local_view(placement, self.plan.generated.mesh.origin),
+        })
+    }
+
+    fn tell(&self, told: recipe::Progress) {
+        self.progress.note(match told.stage {
+            Stage::Mesh => "meshing",
+            Stage::Merge => "merging what crosses",
+            _ => "",
+        });
+        if self.is_alone && told.stage == Stage::Write {
+            self.progress.all.store(told.all, Ordering::Relaxed);
+            self.progress.done.store(told.done, Ordering::Relaxed);
         }
     }
+}
+
+fn world_from_cell(placement: &Placement) -> DAffine3 {
+    DAffine3::from_scale_rotation_translation(
+        DVec3::splat(placement.scale),
+        placement.rotation,
+        placement.translation,
+    )
 }
 
 #[cfg(test)]
-mod tests {
-    use neurotess::mesh::Format;
-
-    use super::*;
-    use crate::io::load;
-    use crate::model::document::SomaEdit;
-    use crate::model::sources;
-
-    const LEVEL_1: MeshLod = MeshLod::Fixed(Some(LodCriterion::Homogeneous(1)));
-
-    fn plan(name: &str) -> MeshPlan {
-        let star = sources::sample(neurotess::synth::Kind::Star);
-        let source = load::load(&star, SomaEdit::default(), None).expect("grown");
-        MeshPlan {
-            name: name.into(),
-            generated: source.generated,
-            placement: Placement {
-                translation: glam::DVec3::X * 1000.0,
-                ..Placement::default()
-            },
-        }
-    }
-
-    fn options(out: PathBuf) -> MeshOptions {
-        MeshOptions {
-            out,
-            format: Format::Ply,
-            lod: LEVEL_1,
-            quads: false,
-            linear: false,
-            flat: false,
-            placed: true,
-            all: true,
-            replace: false,
-        }
-    }
-
-    #[test]
-    fn meshes_are_closed_stand_where_told_and_replace_nothing_unasked() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let out = folder.path().join("a.ply");
-        let view = View::default();
-        let write = |lod, replace| {
-            let options = MeshOptions {
-                lod,
-                replace,
-                ..options(out.clone())
-            };
-            meshes(
-                &[plan("a")],
-                &options,
-                &view,
-                &Detail::default(),
-                600.0,
-                &Progress::new("", "", 1),
-            )
-        };
-        for lod in [
-            LEVEL_1,
-            MeshLod::Fixed(None),
-            MeshLod::AsShown,
-            MeshLod::Fixed(Some(LodCriterion::MaxError(0.1))),
-        ] {
-            write(lod, true).expect("written");
-            let bytes = std::fs::read(&out).expect("there");
-            let mesh = mesh::read_bytes(&bytes, Format::Ply).expect("a mesh");
-            assert!(mesh::check(&mesh).closed, "{lod:?}");
-            let x = mesh.origin.x + f64::from(mesh.vertices[0].position.x);
-            assert!(x > 300.0, "{x}");
-        }
-        assert!(
-            write(LEVEL_1, false)
-                .expect_err("is there")
-                .contains("exists")
-        );
-    }
-
-    #[test]
-    fn many_meshes_go_to_a_folder_with_names_of_their_own() {
-        let plans = [plan("a"), plan("a"), plan("b/c")];
-        let files = mesh_files(&plans, &options(PathBuf::from("out/all.ply"))).expect("named");
-        let names: Vec<String> = files
-            .iter()
-            .map(|f| f.display().to_string().replace('\\', "/"))
-            .collect();
-        assert_eq!(
-            names,
-            ["out/all/a.ply", "out/all/a_1.ply", "out/all/b_c.ply"]
-        );
-        assert!(mesh_files(&[], &options(PathBuf::new())).is_err());
-    }
-}
+#[path = "meshes_tests.rs"]
+mod tests;

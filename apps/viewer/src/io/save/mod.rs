@@ -6,7 +6,8 @@ pub(crate) mod video;
 
 use neurotess::output::Existing;
 
-pub(crate) use meshes::{MeshPlan, meshes};
+use crate::model::save::Written;
+pub(crate) use meshes::{MeshPlan, SeenFrom, meshes};
 pub(crate) use plots::plot;
 
 pub(crate) fn existing(replace: bool) -> Existing {

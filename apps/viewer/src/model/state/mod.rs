@@ -36,7 +36,7 @@ use crate::model::meshes::MeshData;
 use crate::model::placing::Placing;
 use crate::model::playback::Playback;
 use crate::model::plots::MeasurePlot;
-use crate::model::save::{SaveForm, SaveRequest};
+use crate::model::save::{SaveForm, SaveRequest, Written};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources};
 use crate::model::split::Split;
@@ -460,9 +460,14 @@ impl State {
     }
 
     /// Notes how saving ended.
-    pub(crate) fn note_saved(&mut self, result: Result<String, String>) {
+    pub(crate) fn note_saved(&mut self, result: Result<Written, String>) {
         match result {
-            Ok(saved) => self.status = saved,
+            Ok(Written { status, remarks }) => {
+                self.status = status;
+                for (what, why) in remarks {
+                    self.problem(what, why);
+                }
+            }
             Err(why) => {
                 self.status = format!("Not saved: {why}");
                 self.problem("save", why);

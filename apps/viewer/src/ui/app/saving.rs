@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Viewer;
-use crate::io::save::{self, MeshPlan, video};
+use crate::io::save::{self, MeshPlan, SeenFrom, video};
 use crate::io::task::Progress;
 use crate::model::document::Neuron;
 use crate::model::film::{FilmFrame, film_frames};
@@ -44,11 +44,17 @@ impl Viewer {
             SaveRequest::Session(path) => self.save_session(&path),
             SaveRequest::Meshes(options) => {
                 let plans = self.mesh_plans(options.all);
-                let (view, detail) = (self.state.view, self.state.document.detail);
-                let height = self.stage.height();
-                let progress = Progress::new("writing meshes", "meshes", plans.len());
+                let seen_from = SeenFrom {
+                    view: self.state.view,
+                    detail: self.state.document.detail,
+                    height: self.stage.height(),
+                };
+                let progress = match plans.len() {
+                    1 => Progress::new("saving the mesh", "blocks", 0),
+                    several => Progress::new("saving meshes", "meshes", several),
+                };
                 self.worker.save(progress, move |progress| {
-                    save::meshes(&plans, &options, &view, &detail, height, progress)
+                    save::meshes(&plans, &options, &seen_from, progress)
                 });
             }
             SaveRequest::Picture(options) => {
@@ -62,7 +68,7 @@ impl Viewer {
                 self.worker.save(progress, move |progress| {
                     let files = pictures(&still_scene, &[film_frame], &options, progress)?;
                     let file = files.first().map(|f| f.display().to_string());
-                    Ok(format!("Saved {}", file.unwrap_or_default()))
+                    Ok(format!("Saved {}", file.unwrap_or_default()).into())
                 });
             }
             SaveRequest::Film(film) => {
@@ -70,7 +76,7 @@ impl Viewer {
             }
             SaveRequest::Plot(path, plot) => {
                 let progress = Progress::new("writing the plot", "files", 1);
-                let work = move |_: &Progress| save::plot(&path, &plot);
+                let work = move |_: &Progress| save::plot(&path, &plot).map(Into::into);
                 self.worker.save(progress, work);
             }
         }
@@ -98,10 +104,7 @@ impl Viewer {
                 }
                 false => String::new(),
             };
-            Ok(format!(
-                "Saved {count} pictures from {}{also}",
-                first.display()
-            ))
+            Ok(format!("Saved {count} pictures from {}{also}", first.display()).into())
         };
         let progress = Progress::new("drawing the film", "tiles", 0);
         self.worker.save(progress, work);
@@ -129,9 +132,12 @@ impl Viewer {
         let neurons = state.document.neurons.iter().zip(placements.iter());
         let inputs = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
         let plan = |(neuron, &placement): (&Neuron, &_)| {
+            let source = state.sources.get(neuron.source)?;
             Some(MeshPlan {
                 name: neuron.name.clone(),
-                generated: state.sources.get(neuron.source)?.generated.clone(),
+                morphology: source.morphology.clone(),
+                generated: source.generated.clone(),
+                generate: source.soma.options(),
                 placement,
             })
         };

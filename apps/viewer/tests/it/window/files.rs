@@ -5,10 +5,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use neurotess::refine::LodCriterion;
 use neurotess::synth::Kind;
 use neurotess_viewer::Command;
-use neurotess_viewer::save::{MeshLod, MeshOptions, PictureFile};
+use neurotess_viewer::save::{MeshOptions, PictureFile};
 use neurotess_viewer::sources::Stale;
 use neurotess_viewer::state::{Dialog, State};
 
@@ -103,17 +102,8 @@ fn meshes_and_pictures_are_saved() {
     let mut window = with_samples(&[Kind::Star, Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    let meshes = MeshOptions {
-        out: at("all"),
-        format: neurotess::mesh::Format::Glb,
-        lod: MeshLod::Fixed(Some(LodCriterion::Homogeneous(1))),
-        quads: false,
-        linear: false,
-        flat: false,
-        placed: false,
-        all: true,
-        replace: false,
-    };
+    let mut meshes = MeshOptions::new(at("all"), neurotess::mesh::Format::Glb);
+    meshes.recipe = meshes.recipe.with_level(1);
     run(&mut window, Command::SaveMeshes(meshes.clone()));
     assert!(at("all/star.glb").exists() && at("all/granule.glb").exists());
     let picture = PictureFile {

@@ -1,28 +1,26 @@
 //! Saves meshes, pictures, films and sessions.
 
-use std::path::{Path, PathBuf};
+mod meshes;
 
-use eframe::egui::{Button, ComboBox, Id, RichText, Ui};
-use neurotess::mesh::Format;
-use neurotess::refine::LodCriterion;
+use std::path::PathBuf;
+
+use eframe::egui::{Button, Id, RichText, Ui};
 use neurotess::render::LARGEST;
 
-use super::cells::count;
 use super::heading;
-use super::number::{field, kept};
+use super::number::field;
 use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
 use crate::model::command::{Command, FilePurpose};
 use crate::model::film::length;
-use crate::model::save::{FilmOptions, MeshLod, PictureFile};
+use crate::model::save::{FilmOptions, PictureFile};
 use crate::model::state::{Dialog, State};
-use crate::model::targets::mesh_file;
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let name = state.usual_name();
     state.save.propose(&state.settings.folder, &name);
-    meshes(state, ui);
+    meshes::show(state, ui);
     ui.add_space(6.0);
     ui.separator();
     picture(state, ui);
@@ -46,119 +44,6 @@ fn save(state: &mut State, command: Command) {
     if !matches!(asks, Dialog::Nothing) {
         state.dialog = asks;
     }
-}
-
-/// What a format is called in the list: files of both versions of MSH end alike.
-fn title(format: Format) -> &'static str {
-    match format {
-        Format::Msh => "msh 4.1",
-        Format::Msh2 => "msh 2.2",
-        other => other.name(),
-    }
-}
-
-fn meshes(state: &mut State, ui: &mut Ui) {
-    heading(ui, "Meshes");
-    let [shown, selected] = [true, false].map(|all| state.mesh_count(all));
-    let (form, folder) = (&mut state.save, &state.settings.folder);
-    ui.horizontal_wrapped(|ui| {
-        ui.radio_value(&mut form.mesh.all, true, format!("visible ({shown})"));
-        ui.radio_value(&mut form.mesh.all, false, format!("selected ({selected})"));
-    });
-    ui.horizontal(|ui| {
-        ui.label("format");
-        ComboBox::from_id_salt("format")
-            .width(70.0)
-            .selected_text(title(form.mesh.format))
-            .show_ui(ui, |ui| {
-                for format in Format::ALL {
-                    if ui
-                        .selectable_value(&mut form.mesh.format, format, title(format))
-                        .clicked()
-                    {
-                        let path = mesh_file(Path::new(&form.mesh_out), format);
-                        form.mesh_out = path.display().to_string();
-                    }
-                }
-            });
-        let quads = form.mesh.format.has_quads();
-        ui.add_enabled_ui(quads, |ui| ui.checkbox(&mut form.mesh.quads, "quads"));
-    });
-    kept(ui, "mesh lod", |ui| mesh_lod(&mut form.mesh.lod, ui));
-    ui.horizontal_wrapped(|ui| {
-        ui.checkbox(&mut form.mesh.placed, "placed as shown").tip(
-            "Positions as in the window (side by side, or in the circuit); otherwise the coordinates of each file",
-        );
-        ui.checkbox(&mut form.mesh.linear, "straight segments").tip("Straight between traced points; otherwise smooth curves through them");
-        ui.checkbox(&mut form.mesh.flat, "flat ends").tip("Neurites end in flat disks; otherwise in half spheres");
-    });
-    let extension = form.mesh.format.extension();
-    path_line::listing_line(
-        &mut form.mesh_out,
-        Id::unique("mesh path"),
-        extension,
-        folder,
-        ui,
-    );
-    let number = if form.mesh.all { shown } else { selected };
-    if number > 1 {
-        ui.weak("Writes a folder of this name with a file for each neuron.");
-    }
-    let title = format!("Save {}", count(number, "mesh").replace("meshs", "meshes"));
-    let ready = number > 0 && !form.mesh_out.trim().is_empty();
-    if ui.add_enabled(ready, Button::new(title)).clicked() {
-        let mut options = form.mesh.clone();
-        options.out = PathBuf::from(form.mesh_out.trim());
-        save(state, Command::SaveMeshes(options));
-    }
-}
-
-fn mesh_lod(lod: &mut MeshLod, ui: &mut Ui) {
-    // Wrapped: what is too wide widens all that comes after it.
-    ui.horizontal_wrapped(|ui| {
-        let error = matches!(lod, MeshLod::Fixed(Some(LodCriterion::MaxError(_))));
-        let shown = matches!(lod, MeshLod::AsShown);
-        let level = !error && !shown;
-        if ui
-            .selectable_label(level, "subdivisions")
-            .tip("Of every edge of the coarse mesh; 0: the coarse mesh itself")
-            .clicked()
-            && !level
-        {
-            *lod = MeshLod::Fixed(Some(LodCriterion::Homogeneous(4)));
-        }
-        if ui
-            .selectable_label(error, "max. error")
-            .tip("As many subdivisions as keep the mesh within this distance of the smooth surface")
-            .clicked()
-            && !error
-        {
-            *lod = MeshLod::Fixed(Some(LodCriterion::MaxError(0.05)));
-        }
-        if ui
-            .selectable_label(shown, "as shown")
-            .tip("The subdivisions of the picture: finer where the camera is close")
-            .clicked()
-        {
-            *lod = MeshLod::AsShown;
-        }
-        match lod {
-            MeshLod::Fixed(Some(LodCriterion::MaxError(error))) => {
-                field(ui, error, 0.001..=10.0, 4, |field| {
-                    field.speed(0.005).suffix(" µm")
-                });
-            }
-            MeshLod::Fixed(criterion) => {
-                let mut level = match criterion {
-                    Some(LodCriterion::Homogeneous(level)) => *level,
-                    _ => 0,
-                };
-                field(ui, &mut level, 0..=64, 0, |field| field.suffix(" per edge"));
-                *criterion = (level > 0).then_some(LodCriterion::Homogeneous(level));
-            }
-            MeshLod::AsShown => {}
-        }
-    });
 }
 
 fn picture(state: &mut State, ui: &mut Ui) {
