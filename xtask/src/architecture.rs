@@ -45,6 +45,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-refine",
             "neurotess-union",
             "neurotess-output",
+            // Pictures, behind a feature.
+            "neurotess-render",
+            "neurotess-color",
         ],
     ),
     ("neurotess-output", &[]),

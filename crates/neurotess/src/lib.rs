@@ -47,6 +47,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! One value of options does the same, and more: [`read`], [`mesh()`] and, with the feature `render`, `draw` are
+//! meshes and pictures in a line each; see [`recipe`].
+//!
 //! The **coarse mesh** is small and is what a renderer needs; the **surface** may be far larger than
 //! memory. For a surface as fine as an error asks for, use
 //! [`LodCriterion::MaxError`](refine::LodCriterion::MaxError). What is in doubt comes back as **warnings**, of
@@ -67,7 +70,7 @@
 //! | [`coloring`] | what the colors of pictures tell | `render` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
-//! | [`recipe`] | from a tracing to the mesh that a purpose needs: all stages by one value of options | |
+//! | [`recipe`] | from a tracing to the mesh that a purpose needs, its files and its picture: all stages by one value of options | pictures: `render` |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
@@ -87,6 +90,8 @@ pub use neurotess_morphology as morphology;
 pub use neurotess_output as output;
 pub use neurotess_plot as plot;
 pub use neurotess_recipe as recipe;
+#[cfg(feature = "render")]
+pub use neurotess_recipe::draw;
 pub use neurotess_recipe::{mesh, read};
 pub use neurotess_refine as refine;
 #[cfg(feature = "render")]
@@ -96,6 +101,6 @@ pub use neurotess_synth as synth;
 pub use neurotess_union as union;
 
 /// The code of docs/library.md.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "render"))]
 #[doc = include_str!("../../../docs/library.md")]
 struct LibraryPage;

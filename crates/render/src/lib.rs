@@ -33,7 +33,7 @@ pub mod adapter {
 
 /// Bounding spheres of meshes, and whether they are in view.
 pub mod bounds {
-    pub use crate::view::bounds::{any_shows, bounds, merged, surface_points};
+    pub use crate::view::bounds::{any_shows, bounds, merged, surface_points, traced};
     pub use crate::view::frustum::shows;
 }
 
@@ -54,7 +54,7 @@ pub mod outline {
 pub mod overlay {
     pub use crate::output::annotation::{Annotation, AnnotationLine, Annotations};
     pub use crate::output::legend::{Legend, nice_length, scale_bar};
-    pub use crate::output::overlay::{Overlay, OverlayOptions};
+    pub use crate::output::overlay::{MARGIN, Overlay, OverlayOptions};
 }
 
 /// Picking: what is drawn at a pixel.

@@ -47,6 +47,11 @@ pub struct OverlayOptions {
     pub background: Option<Rgb>,
 }
 
+/// Share of the picture that stays free on each side.
+pub const MARGIN: f64 = 0.04;
+/// Greatest share of the width that is left free for a legend.
+const MAX_BESIDE: f64 = 0.35;
+
 /// Height of a line, as a share of the picture's.
 const LINE: f32 = 0.023;
 
@@ -117,6 +122,31 @@ impl Overlay {
         let camera = cameras.first();
         overlay.pieces = pieces(&kept, options.legend.as_ref(), camera);
         overlay
+    }
+
+    /// [`Overlay::new`], and the cameras. If the legend would cover something, the scene is fitted again beside it:
+    /// `fit` gives the camera with these margins (left, right, top, bottom), if it may be another one.
+    pub fn with_room(
+        options: &OverlayOptions,
+        size: [u32; 2],
+        cameras: Vec<Camera>,
+        spheres: &[BoundingSphere],
+        fit: impl FnOnce([f64; 4]) -> Option<Camera>,
+    ) -> (Self, Vec<Camera>) {
+        let overlay = Self::new(options, size, &cameras, spheres);
+        let covered = overlay.covering.filter(|share| share.abs() <= MAX_BESIDE);
+        let beside = covered.and_then(|share| {
+            let free = share.abs() + MARGIN;
+            let (left, right) = match share < 0.0 {
+                true => (free, MARGIN),
+                false => (MARGIN, free),
+            };
+            fit([left, right, MARGIN, MARGIN])
+        });
+        match beside {
+            Some(camera) => (Self::new(options, size, &[camera], spheres), vec![camera]),
+            None => (overlay, cameras),
+        }
     }
 
     /// The overlay of another picture of the series: with its legend, scale bar and axes, in the

@@ -4,7 +4,7 @@
 //! of ten tiles of a cell drawn 4096 pixels high are empty.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Patch, Role, SurfaceMesh};
+use neurotess_mesh::{CoarseMesh, Patch, Role, SurfaceMesh, TracingPoint};
 
 use crate::view::frame::Frame;
 use crate::view::frustum::BoundingSphere;
@@ -29,6 +29,22 @@ pub fn bounds(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
         }
     }
     spheres
+}
+
+/// Spheres around the tracing points of a mesh that its surface shows, to fit a camera to: tighter than [`bounds`], and
+/// nearly all of the surface is within them.
+pub fn traced(mesh: &CoarseMesh) -> Vec<BoundingSphere> {
+    let mut is_shown = vec![false; mesh.tracing.len()];
+    for vertex in &mesh.vertices {
+        is_shown[vertex.tracing as usize] = true;
+    }
+    let points = mesh.tracing.iter().zip(is_shown);
+    let shown = points.filter(|(_, is_shown)| *is_shown);
+    let sphere = |(point, _): (&TracingPoint, bool)| {
+        let center = mesh.origin + point.center.as_dvec3();
+        (center, f64::from(point.radius.max(0.0)))
+    };
+    shown.map(sphere).collect()
 }
 
 fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {

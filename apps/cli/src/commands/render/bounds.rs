@@ -1,7 +1,6 @@
 //! Bounding spheres of the scene.
 
-use neurotess::mesh::TracingPoint;
-use neurotess::render::bounds::{bounds, merged};
+use neurotess::render::bounds::{bounds, merged, traced};
 use neurotess::render::{BoundingSphere, Placement};
 use rayon::prelude::*;
 
@@ -23,7 +22,7 @@ pub(crate) fn spheres(
     if placements.len() >= MANY || cells.iter().any(|cell| cell.bounds.is_some()) {
         return covering(cells, placements);
     }
-    let own: Vec<Vec<BoundingSphere>> = cells.iter().map(|cell| of_cell(cell).collect()).collect();
+    let own: Vec<Vec<BoundingSphere>> = cells.iter().map(|cell| traced(&cell.mesh)).collect();
     placed(&own, placements)
 }
 
@@ -62,23 +61,6 @@ fn placed(own: &[Vec<BoundingSphere>], placements: &[(usize, Placement)]) -> Vec
         .iter()
         .for_each(|placement| spheres.extend(at(placement)));
     spheres
-}
-
-/// Bounding spheres of a cell's surface.
-fn of_cell(cell: &MeshedCell) -> impl Iterator<Item = BoundingSphere> {
-    let origin = cell.mesh.origin;
-    let used = cell
-        .mesh
-        .vertices
-        .iter()
-        .map(|vertex| vertex.tracing as usize);
-    let mut seen = vec![false; cell.mesh.tracing.len()];
-    used.for_each(|index| seen[index] = true);
-    let tracing = cell.mesh.tracing.iter().zip(seen);
-    let shown = tracing.filter(|(_, seen)| *seen).map(|(point, _)| point);
-    shown.map(move |TracingPoint { center, radius, .. }| {
-        (origin + center.as_dvec3(), f64::from(radius.max(0.0)))
-    })
 }
 
 #[cfg(test)]

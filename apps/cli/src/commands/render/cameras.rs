@@ -1,15 +1,11 @@
 //! The cameras that follow from the options.
 
+use neurotess::render::overlay::MARGIN;
 use neurotess::render::{BoundingSphere, Camera, CameraError, Lens, Side};
 
 use super::args::{RenderArgs, ViewSide};
 use super::values::Fit;
 use crate::report::usage;
-
-/// Share of the picture that stays free on each side.
-const MARGIN: f64 = 0.04;
-/// Greatest share of the width that is left free for a legend.
-const MOST_BESIDE: f64 = 0.35;
 
 /// Cameras of all pictures, one or as many as there are frames.
 ///
@@ -33,20 +29,17 @@ pub(crate) fn cameras(
         .collect())
 }
 
-/// The camera that leaves a share of the width free for the legend, on the left (negative) or the
-/// right; none if that is too much, or if --eye or a height sets the camera.
-pub(crate) fn beside(args: &RenderArgs, spheres: &[BoundingSphere], share: f64) -> Option<Camera> {
-    let set = args.eye.is_some() || matches!(args.orthographic, Some(Fit::Length(_)));
-    if set || args.turntable || share.abs() > MOST_BESIDE {
-        return None;
+/// The camera with other margins (left, right, top, bottom); none if --eye, a height or the turntable sets it.
+pub(crate) fn refitted(
+    args: &RenderArgs,
+    spheres: &[BoundingSphere],
+    margins: [f64; 4],
+) -> Option<Camera> {
+    let is_set = args.eye.is_some() || matches!(args.orthographic, Some(Fit::Length(_)));
+    match is_set || args.turntable {
+        true => None,
+        false => camera(args, spheres, margins).ok(),
     }
-    let free = share.abs() + MARGIN;
-    let (left, right) = if share < 0.0 {
-        (free, MARGIN)
-    } else {
-        (MARGIN, free)
-    };
-    camera(args, spheres, [left, right, MARGIN, MARGIN]).ok()
 }
 
 fn camera(

@@ -29,7 +29,7 @@ const WIRE: f32 = 1.0;
 pub(super) fn overlay(
     args: &RenderArgs,
     colored: &PictureColors,
-    mut cameras: Vec<Camera>,
+    cameras: Vec<Camera>,
     spheres: &[BoundingSphere],
 ) -> (Overlay, Vec<Camera>) {
     let options = OverlayOptions {
@@ -41,15 +41,8 @@ pub(super) fn overlay(
         axes: args.axes,
         background: args.background(),
     };
-    let mut overlay = Overlay::new(&options, args.size.0, &cameras, spheres);
-    let beside = overlay
-        .covering
-        .and_then(|share| cameras::beside(args, spheres, share));
-    if let Some(camera) = beside {
-        cameras = vec![camera];
-        overlay = Overlay::new(&options, args.size.0, &cameras, spheres);
-    }
-    (overlay, cameras)
+    let refitted = |margins| cameras::refitted(args, spheres, margins);
+    Overlay::with_room(&options, args.size.0, cameras, spheres, refitted)
 }
 
 pub(super) fn draw(

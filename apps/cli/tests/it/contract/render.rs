@@ -522,3 +522,20 @@ fn axes_are_drawn_where_there_is_room() {
         assert_eq!(axis(&picture), shows, "{name}");
     }
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn the_library_draws_the_same_picture() {
+    use neurotess::recipe::{DrawOptions, MeshOptions};
+    let (work, _) = drawn("--scale-bar");
+    let tracing = neurotess::read(work.path("cell.swc")).expect("a cell");
+    let cell = neurotess::mesh(&tracing, &MeshOptions::default()).expect("meshed");
+    let options = DrawOptions::default()
+        .with_size([120, 90])
+        .with_scale_bar(0.0);
+    let picture = neurotess::draw(&[&cell], &options).expect("drawn");
+    picture.save(work.path("ours.png")).expect("saved");
+    let [theirs, ours] = ["cell.png", "ours.png"].map(|name| Picture::read(&work, name));
+    assert_eq!(ours.size, theirs.size);
+    assert!(ours.pixels == theirs.pixels);
+    assert!(neurotess::draw(&[], &options).is_err());
+}
