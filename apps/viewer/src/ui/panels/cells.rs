@@ -6,11 +6,11 @@ use eframe::egui::{
 };
 use neurotess::morphology::{Attachment, Morphology, SectionId};
 
-use super::measured;
-use super::tip::Tip;
 use crate::model::command::{Command, Edit};
 use crate::model::sources::{SectionFacts, Stale};
 use crate::model::state::{CellPart, Picked, State};
+use crate::ui::panels::measured;
+use crate::ui::panels::widgets::tip::Tip;
 
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     ui.add_space(4.0);

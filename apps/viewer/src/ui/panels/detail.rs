@@ -5,13 +5,13 @@ use std::ops::RangeInclusive;
 use eframe::egui::emath::Numeric;
 use eframe::egui::{self, Color32, Pos2, Sense, Stroke, Ui, vec2};
 
-use super::number::slider;
-use super::tip::Tip;
-use super::{figures, grouped, heading};
 use crate::model::command::{Command, Edit};
 use crate::model::document::{Detail, LodKind, RestChoice};
 use crate::model::state::{Draft, Lowered, State};
 use crate::ui::file_panel::size;
+use crate::ui::panels::widgets::number::slider;
+use crate::ui::panels::widgets::tip::Tip;
+use crate::ui::panels::{figures, grouped, heading};
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
     let mut detail = state.document.detail;

@@ -1,43 +1,17 @@
 //! Panels: plain functions of the state that request commands.
 
-mod area;
-mod cell_tip;
+mod bars;
 mod cells;
-mod chips;
-mod color_map;
-mod crossings;
 mod detail;
 mod dialogs;
-mod dimension_list;
-mod dimensions;
 mod empty;
-mod gizmo;
 mod held;
 mod inspect;
-mod leaving;
 mod look;
-mod markers;
-mod marks;
-mod measures;
-mod measuring;
-mod menu;
-mod meshes;
-mod number;
-mod overlay;
-mod own_colors;
-mod panes;
-mod partners;
-mod place;
-mod rings;
+mod picture;
 mod save;
-mod saved_views;
 mod soma;
-mod spines;
-mod status;
-mod timeline;
-mod tip;
-mod traces;
-mod viewport;
+mod widgets;
 
 use std::time::Duration;
 
@@ -87,20 +61,20 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     screen.state.pointed_dimension = None;
     if screen.state.presenting && !screen.state.document.neurons.is_empty() {
         CentralPanel::no_frame().show(ui, |ui| {
-            panes::show(screen, (before, marker_before), ui);
+            picture::panes::show(screen, (before, marker_before), ui);
             presentation(ui);
         });
         dialogs::show(screen.state, screen.files, &ctx);
         return;
     }
-    Panel::top("menu").show(ui, |ui| menu::show(screen.state, ui));
+    Panel::top("menu").show(ui, |ui| bars::menu::show(screen.state, ui));
     let progress = screen.stage.progress();
     Panel::bottom("status").show(ui, |ui| {
-        status::show(screen.state, &screen.tasks, progress, ui);
+        bars::status::show(screen.state, &screen.tasks, progress, ui);
     });
     let any = !screen.state.document.neurons.is_empty();
     if let Some(facts) = screen.state.playback.facts.clone().filter(|_| any) {
-        Panel::bottom("time").show(ui, |ui| timeline::show(screen.state, &facts, ui));
+        Panel::bottom("time").show(ui, |ui| bars::timeline::show(screen.state, &facts, ui));
     }
     if screen.state.traces.open && any {
         // A part of the picture always stays.
@@ -110,7 +84,9 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
             .default_size(TRACES.min(most));
         sized.size_range(80.0_f32.min(most)..=most).show(ui, |ui| {
             let reading = screen.tasks[3].clone();
-            kept_in(ui, |ui| traces::show(screen.state, reading.as_ref(), ui));
+            kept_in(ui, |ui| {
+                bars::traces::show(screen.state, reading.as_ref(), ui);
+            });
         });
     }
     if screen.state.panels && any {
@@ -131,7 +107,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     }
     CentralPanel::no_frame().show(ui, |ui| {
         if any {
-            panes::show(screen, (before, marker_before), ui);
+            picture::panes::show(screen, (before, marker_before), ui);
         } else {
             let reads = screen.tasks[0].is_some();
             empty::show(screen.state, reads, ui);

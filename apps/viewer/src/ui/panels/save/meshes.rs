@@ -7,15 +7,15 @@ use neurotess::mesh::{Format, Unit};
 use neurotess::recipe::{Crossings, Levels, Purpose};
 use neurotess::refine::{Caps, EdgeRule, LodCriterion, Path as Course};
 
-use super::super::cells::count;
-use super::super::heading;
-use super::super::number::{field, kept};
-use super::super::tip::Tip;
 use super::save;
 use crate::model::command::Command;
 use crate::model::save::MeshOptions;
 use crate::model::state::State;
 use crate::model::targets::mesh_file;
+use crate::ui::panels::cells::count;
+use crate::ui::panels::heading;
+use crate::ui::panels::widgets::number::{field, kept};
+use crate::ui::panels::widgets::tip::Tip;
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {

@@ -8,13 +8,13 @@ use eframe::egui::{Button, Id, RichText, Ui};
 use neurotess::render::LARGEST;
 
 use super::heading;
-use super::number::field;
-use super::tip::Tip;
 use crate::io::save::video::has_ffmpeg;
 use crate::model::command::{Command, FilePurpose};
 use crate::model::film::length;
 use crate::model::save::{FilmOptions, PictureFile};
 use crate::model::state::{Dialog, State};
+use crate::ui::panels::widgets::number::field;
+use crate::ui::panels::widgets::tip::Tip;
 use crate::ui::path_line;
 
 pub(super) fn show(state: &mut State, ui: &mut Ui) {
