@@ -53,7 +53,7 @@ impl Stage {
             Ok(built) => built?,
             Err(why) => {
                 // Not tried again: the same content would fail again.
-                self.checked = of;
+                self.on_device.checked = of;
                 state.problem("preparing the picture", why);
                 return Ok(());
             }
@@ -64,7 +64,7 @@ impl Stage {
                 let instances = content::device_instances(&built.content.instances);
                 let scene = Scene::new(templates, instances);
                 self.adaptive.set_scene(scene.unwrap_or_default());
-                self.residency = built.residency;
+                self.room.residency = built.residency;
                 self.rebuilds.templates += 1;
                 let instances = built.instances.of_content(built.content.revision);
                 self.content = built.content;
@@ -73,8 +73,8 @@ impl Stage {
             None => self.content.recolor(built.content),
         }
         self.set_colors();
-        self.colors = Some(built.colors);
-        self.checked = None;
+        self.on_device.colors = Some(built.colors);
+        self.on_device.checked = None;
         self.drawn = None;
         self.recording(state, ctx);
         if let Some((what, why)) = built.problem {
@@ -101,7 +101,7 @@ impl Stage {
             colors,
             state.document.look.radius_factor(),
         );
-        if self.checked.as_ref() == Some(&checked) {
+        if self.on_device.checked.as_ref() == Some(&checked) {
             return Ok(());
         }
         let colors = checked.2.clone();
@@ -120,22 +120,23 @@ impl Stage {
         } else {
             Vec::new()
         };
-        let recolored = self.colors.as_ref() != Some(&colors);
+        let recolored = self.on_device.colors.as_ref() != Some(&colors);
         if same_sources && !recolored && changed.is_empty() {
-            self.checked = Some(checked);
+            self.on_device.checked = Some(checked);
             return Ok(());
         }
         let records = self.content.recording.is_some();
-        let same_subject = self.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
+        let same_subject =
+            self.on_device.colors.as_ref().map(|c| &c.subject) == Some(&colors.subject);
         if same_sources && records && same_subject && changed.is_empty() {
             self.restyle_values(state, colors);
-            self.checked = Some(checked);
+            self.on_device.checked = Some(checked);
             return Ok(());
         }
         let as_traced = sources.iter().all(SceneTemplate::is_as_traced);
         if same_sources && !recolored && !records && as_traced && sources.len() <= QUICK {
             let request = ColorRequest::new(state, &sources);
-            self.checked = Some(checked);
+            self.on_device.checked = Some(checked);
             return self.replace(sources, &changed, &request);
         }
         self.build(state, sources, checked, ctx);
@@ -166,7 +167,7 @@ impl Stage {
         self.content = SceneContent::new(sources, instances, colored);
         // The instances are the same, with other meshes.
         let revision = self.content.revision;
-        self.instances = self.instances.map(|key| key.of_content(revision));
+        self.on_device.instances = self.on_device.instances.map(|key| key.of_content(revision));
         self.set_colors();
         self.rebuilds.templates += 1;
         self.rebuilds.colors += 1;
@@ -188,7 +189,7 @@ impl Stage {
         let before = Before::of(&self.content);
         let colors = of.2.clone();
         let drawn = self.content.sources.clone();
-        let memory = self.memory.map(|most| most / 2);
+        let memory = self.room.memory.map(|most| most / 2);
         let work = move |_: &Progress| {
             let sources = request.meshed(sources, &drawn);
             let mut colored = request.colors(&sources);

@@ -117,7 +117,7 @@ impl Stage {
     /// Sets the number of patches above which a picture is too expensive, whatever was measured:
     /// for tests.
     pub fn limit_patches(&mut self, most: Option<u64>) {
-        self.cost_model.most_patches = most;
+        self.pace.cost_model.most_patches = most;
     }
 
     /// Finds the patches and the templates of all neurons that may be in view.
@@ -148,17 +148,17 @@ impl Stage {
             patches += mesh.patches.len() as u64;
             templates[instance.source] = true;
         }
-        self.patches = patches;
+        self.room.patches = patches;
         let templates = (0..).zip(templates);
-        self.in_view = templates.filter(|t| t.1).map(|t| t.0).collect();
+        self.room.in_view = templates.filter(|t| t.1).map(|t| t.0).collect();
     }
 
     /// How the picture at rest is drawn.
     pub(super) fn select_rest_mode(&mut self, params: &ViewParams, choice: RestChoice) -> RestMode {
         let has_proxies = explorable(params) && self.explorer.fits(&self.content);
-        let residency = self.residency.as_ref();
-        let too_large = residency.is_some_and(|residency| !residency.fit(&self.in_view));
-        let too_many = too_large || self.cost_model.too_many(self.patches);
+        let residency = self.room.residency.as_ref();
+        let too_large = residency.is_some_and(|residency| !residency.fit(&self.room.in_view));
+        let too_many = too_large || self.pace.cost_model.too_many(self.room.patches);
         match (choice, has_proxies) {
             (RestChoice::Full, true) if too_large => RestMode::Explored,
             (RestChoice::Full, _) => RestMode::Refined,
@@ -173,19 +173,22 @@ impl Stage {
 
     /// Updates the estimates from the last slice.
     pub(super) fn note_slice(&mut self, took_ms: f64) {
-        match self.rest_mode {
-            RestMode::Refined => self.cost_model.note_refined(took_ms, self.patches),
-            RestMode::Explored => self.cost_model.note_explored(took_ms),
+        match self.pace.rest_mode {
+            RestMode::Refined => self
+                .pace
+                .cost_model
+                .note_refined(took_ms, self.room.patches),
+            RestMode::Explored => self.pace.cost_model.note_explored(took_ms),
             RestMode::Coarser => {}
         }
     }
 
     /// How the quality of the picture at rest is reduced.
     pub(super) fn lowered(&self) -> Option<Lowered> {
-        match self.rest_mode {
+        match self.pace.rest_mode {
             RestMode::Refined => None,
-            RestMode::Explored => Some(Lowered::Triangles(self.surveyed)),
-            RestMode::Coarser => Some(Lowered::Error(self.coarser)),
+            RestMode::Explored => Some(Lowered::Triangles(self.pace.surveyed)),
+            RestMode::Coarser => Some(Lowered::Error(self.pace.coarser)),
         }
     }
 }

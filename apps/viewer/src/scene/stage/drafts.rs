@@ -72,7 +72,7 @@ impl Stage {
     /// The near plane of a camera; `which`: 0 for that of the picture, 1 for that of frozen levels.
     fn near(&mut self, state: &State, which: usize, camera: Camera) -> f64 {
         let key = (camera, state.spheres_key());
-        match self.near[which] {
+        match self.on_device.near[which] {
             Some((known, near)) if known == key => near,
             _ => {
                 let (spheres, meshes) = (state.spheres(), state.mesh_points(true));
@@ -80,7 +80,7 @@ impl Stage {
                     true => camera.near(&spheres),
                     false => camera.near(&[&spheres[..], &meshes].concat()),
                 };
-                self.near[which] = Some((key, near));
+                self.on_device.near[which] = Some((key, near));
                 near
             }
         }
@@ -88,11 +88,11 @@ impl Stage {
 
     fn clip(&mut self, state: &State) -> Option<Clip> {
         let key = (state.document.look.cut?, state.spheres_key());
-        match self.clip {
+        match self.on_device.clip {
             Some((known, clip)) if known == key => clip,
             _ => {
                 let clip = content::clip(&state.document.look, &state.spheres());
-                self.clip = Some((key, clip));
+                self.on_device.clip = Some((key, clip));
                 clip
             }
         }
@@ -111,33 +111,33 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
-        if self.instances != Some(inputs.instances) {
+        if self.on_device.instances != Some(inputs.instances) {
             self.set_instances(state, inputs.instances);
         }
         self.look(state, &inputs.params);
         if self.explorer.is_making()
             && explorable(&inputs.params)
-            && (self.residency.is_some() || self.cost_model.too_many(self.patches))
+            && (self.room.residency.is_some() || self.pace.cost_model.too_many(self.room.patches))
         {
             // Refining even a draft would take seconds: waits for the proxies.
             ctx.request_repaint_after(Duration::from_millis(15));
             return Ok(());
         }
-        if self.drafted && self.progressive.shows_draft() {
+        if self.pace.drafted && self.progressive.shows_draft() {
             self.keep_up();
         }
-        if self.states != Some(inputs.states) {
+        if self.on_device.states != Some(inputs.states) {
             self.set_states(state, inputs.states);
         }
         // If only the selection has changed, picking stays valid, so that the second click of a
         // double click hits what the first one did.
         let before = self.drawn.map(|d| (d.params, d.instances));
         if before != Some((inputs.params, inputs.instances)) {
-            self.picks = None;
+            self.pointing.picks = None;
         }
-        self.picks_stale = true;
-        self.resolver = None;
-        self.counts = None;
+        self.pointing.stale = true;
+        self.pointing.resolver = None;
+        self.pace.counts = None;
         let any = !state.document.neurons.selected().is_empty();
         let around = Outlines {
             // No outlines if there is nothing to outline, since searching for them takes time.
@@ -145,13 +145,13 @@ impl Stage {
             ..outlines(&inputs.params, state.shown())
         };
         self.progressive.set_outlines(&self.gpu, around, None);
-        self.mask = None;
+        self.pointing.mask = None;
         self.draw_draft(&inputs)?;
         self.drawn = Some(inputs);
         self.legend = self.whole_legend();
-        self.revalued = false;
-        self.drafted = true;
-        ctx.request_repaint_after(match self.phase {
+        self.recorded.changed = false;
+        self.pace.drafted = true;
+        ctx.request_repaint_after(match self.pace.phase {
             RestPhase::Collects => Duration::ZERO,
             _ => REST,
         });
@@ -163,7 +163,7 @@ impl Stage {
     fn note_change(&mut self, state: &State, inputs: &PictureInputs) {
         let key = StaticKey::new(inputs);
         let same = self.shape == Some(key);
-        if same && self.phase == RestPhase::Collects {
+        if same && self.pace.phase == RestPhase::Collects {
             return;
         }
         if !same {
@@ -171,9 +171,9 @@ impl Stage {
             self.shape = Some(key);
         }
         if !same || !state.playback.playing {
-            self.moved = Instant::now();
+            self.pace.moved = Instant::now();
         }
-        self.phase = RestPhase::Waits;
+        self.pace.phase = RestPhase::Waits;
         self.progressive.stop();
     }
 
@@ -184,14 +184,15 @@ impl Stage {
         let fine = self.fine(true);
         let explorer = match explorable(&params) {
             true => {
-                let (gpu, content, instances) = (&self.gpu, &self.content, self.instances);
+                let (gpu, content, instances) =
+                    (&self.gpu, &self.content, self.on_device.instances);
                 let upload = Some(DRAFT_UPLOAD);
                 self.explorer
                     .exploration(gpu, content, instances, budget, &fine, upload)
             }
             false => None,
         };
-        self.explored = explorer.is_some();
+        self.pace.explored = explorer.is_some();
         let key = inputs.markers;
         if let Some(source) = explorer {
             let mut finer: Option<&mut dyn VertexSource> = None;
@@ -217,12 +218,12 @@ impl Stage {
         self.adaptive.set_settings(AdaptiveSettings {
             // Leaves out no patches that are drawn at rest, since holes that come and go would look
             // broken.
-            lod: inputs.detail.lod().coarser(self.coarser),
+            lod: inputs.detail.lod().coarser(self.pace.coarser),
             smallest: inputs.detail.smallest,
             wireframe: params.look.wire > 0.0,
             ..AdaptiveSettings::default()
         });
-        let halved = self.coarser > HALF_FROM;
+        let halved = self.pace.coarser > HALF_FROM;
         if halved {
             params.size = params.size.map(|n| n.div_ceil(2));
             params.look.least_width *= 0.5;
@@ -244,15 +245,15 @@ impl Stage {
         match Scene::new(templates, instances) {
             Ok(scene) => self.adaptive.set_scene(scene),
             // Placements are always valid; if one should not be, everything is rebuilt.
-            Err(_) => (self.colors, self.checked) = (None, None),
+            Err(_) => (self.on_device.colors, self.on_device.checked) = (None, None),
         }
         self.instances_are(key);
     }
 
     /// Notes the key of the content's instances.
     pub(super) fn instances_are(&mut self, key: InstancesKey) {
-        self.shows = self.content.instances.iter().map(|s| !s.hidden).collect();
-        self.instances = Some(key);
+        self.on_device.shows = self.content.instances.iter().map(|s| !s.hidden).collect();
+        self.on_device.instances = Some(key);
         self.rebuilds.instances += 1;
     }
 
@@ -262,7 +263,7 @@ impl Stage {
             states[neuron] |= OUTLINED;
         }
         self.progressive.set_states(states);
-        self.states = Some(key);
+        self.on_device.states = Some(key);
         self.rebuilds.states += 1;
     }
 
@@ -270,19 +271,19 @@ impl Stage {
     pub(super) fn keep_up(&mut self) {
         let took = self.progressive.last_ms();
         self.note_frame(took);
-        if self.explored {
+        if self.pace.explored {
             self.explorer.keep_up(took, DRAFT_MS);
         } else if took > 1.5 * DRAFT_MS {
-            self.coarser = (self.coarser * 2.0).min(32.0);
+            self.pace.coarser = (self.pace.coarser * 2.0).min(32.0);
         } else if took < 0.4 * DRAFT_MS {
-            self.coarser = (self.coarser / 1.4).max(1.0);
+            self.pace.coarser = (self.pace.coarser / 1.4).max(1.0);
         }
     }
 
     pub(super) fn note_frame(&mut self, took: f64) {
-        self.frames.push_back(took as f32);
-        if self.frames.len() > FRAMES {
-            self.frames.pop_front();
+        self.pace.frames.push_back(took as f32);
+        if self.pace.frames.len() > FRAMES {
+            self.pace.frames.pop_front();
         }
     }
 }

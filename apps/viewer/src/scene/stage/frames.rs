@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui;
-use neurotess::coloring::Recording;
+use neurotess::coloring::{Recording, VisibleValues};
 use neurotess::render::color::ColorTable;
 
 use super::Stage;
@@ -14,6 +14,20 @@ use crate::model::document::Document;
 use crate::model::playback::Facts;
 use crate::model::state::State;
 use crate::scene::colors::{ColorInputs, color_scheme};
+
+/// Values of the recording's current frame.
+#[derive(Default)]
+pub(super) struct RecordedValues {
+    /// Reads the recording.
+    pub(super) reader: Option<FrameReader>,
+    pub(super) values: Option<Arc<FrameValues>>,
+    /// Where the recording has what shows in the static picture.
+    pub(super) visible: Option<Arc<VisibleValues>>,
+    /// Whether values of the current frame are still to be read.
+    pub(super) due: bool,
+    /// Whether values, or colors of markers, have changed since they were drawn.
+    pub(super) changed: bool,
+}
 
 impl Stage {
     /// Starts to read another recording, or none.
@@ -25,12 +39,12 @@ impl Stage {
             .map(|(recording, _)| recording);
         let same =
             |reader: &FrameReader| recording.is_some_and(|r| Arc::ptr_eq(reader.recording(), r));
-        if !self.reader.as_ref().is_some_and(same) {
-            self.reader = recording.map(|recording| {
+        if !self.recorded.reader.as_ref().is_some_and(same) {
+            self.recorded.reader = recording.map(|recording| {
                 let ctx = ctx.clone();
                 FrameReader::new(Arc::clone(recording), move || ctx.request_repaint())
             });
-            self.values = None;
+            self.recorded.values = None;
             self.find_visible();
         }
         self.tell(state);
@@ -39,7 +53,7 @@ impl Stage {
     /// The recording that shows, if it was matched with the document's neurons.
     pub(crate) fn recording_of(&self, document: &Document) -> Option<&Arc<Recording>> {
         let (recording, _) = self.content.recording.as_ref()?;
-        let colors = self.colors.as_ref()?;
+        let colors = self.on_device.colors.as_ref()?;
         (colors.subject == ColorInputs::new(document).subject).then_some(recording)
     }
 
@@ -77,7 +91,7 @@ impl Stage {
         };
         self.content.legend = restyled.legend;
         self.set_colors();
-        self.colors = Some(key);
+        self.on_device.colors = Some(key);
         self.rebuilds.colors += 1;
         self.drawn = None;
         self.tell(state);
@@ -92,17 +106,17 @@ impl Stage {
     /// Takes the values of the current frame if they have been read: those that show in the static
     /// picture, or those of all neurons that are shown. True if they differ from those before.
     pub(super) fn take_values(&mut self, state: &mut State, ctx: &egui::Context) -> bool {
-        self.values_due = false;
-        let (Some(reader), Some(facts)) = (&self.reader, &state.playback.facts) else {
+        self.recorded.due = false;
+        let (Some(reader), Some(facts)) = (&self.recorded.reader, &state.playback.facts) else {
             return false;
         };
         let Some(frame) = state.playback.frame() else {
             return false;
         };
-        let of = match &self.visible {
+        let of = match &self.recorded.visible {
             Some(visible) => ValuesOf::Visible(Arc::clone(visible)),
             None => ValuesOf::Neurons {
-                shows: Arc::clone(&self.shows),
+                shows: Arc::clone(&self.on_device.shows),
                 range: facts.range,
             },
         };
@@ -122,10 +136,11 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds.min(1.0)));
         }
         let Some(values) = values else {
-            self.values_due = true;
+            self.recorded.due = true;
             return false;
         };
         if self
+            .recorded
             .values
             .as_ref()
             .is_some_and(|v| Arc::ptr_eq(v, &values))
@@ -136,7 +151,7 @@ impl Stage {
             self.progressive.set_values(values.clone());
             self.content.table.values = values.clone();
         }
-        self.values = Some(values);
+        self.recorded.values = Some(values);
         true
     }
 }

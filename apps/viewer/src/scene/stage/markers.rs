@@ -196,7 +196,7 @@ impl Stage {
             self.markers.revision = Revision::next();
             // Ids of a picture that is on its way are those of the markers before. What was resolved stays, so
             // that the second click of a double click hits what the first one did.
-            (self.resolver, self.picks_stale) = (None, true);
+            (self.pointing.resolver, self.pointing.stale) = (None, true);
         }
         self.markers.made = Some(Arc::new(made.markers));
         self.markers_changed();
@@ -206,7 +206,7 @@ impl Stage {
     fn markers_changed(&mut self) {
         self.set_colors();
         self.rebuilds.colors += 1;
-        self.revalued = true;
+        self.recorded.changed = true;
     }
 
     /// The markers that show, if cells leave room for their colors; else they are being made again.
@@ -294,9 +294,9 @@ impl Stage {
 
     /// Triangles of what is drawn at rest, if it has a budget.
     pub(super) fn rest_budget(&self) -> Option<u32> {
-        match self.rest_mode {
+        match self.pace.rest_mode {
             RestMode::Refined => None,
-            RestMode::Explored | RestMode::Coarser => Some(self.cost_model.budget),
+            RestMode::Explored | RestMode::Coarser => Some(self.pace.cost_model.budget),
         }
     }
 }

@@ -182,10 +182,10 @@ impl Stage {
             self.meshes.revision = Revision::next();
             self.drop_hidden();
             // Ids of a picture that is on its way are those of the meshes before.
-            (self.resolver, self.picks_stale) = (None, true);
+            (self.pointing.resolver, self.pointing.stale) = (None, true);
         }
         self.set_colors();
-        self.revalued = true;
+        self.recorded.changed = true;
     }
 
     /// Gives back what no mesh of the document needs, but for what was hidden a moment ago.

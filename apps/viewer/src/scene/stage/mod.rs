@@ -8,25 +8,23 @@ mod drafts;
 mod frames;
 mod markers;
 mod meshes;
+mod pace;
 mod pointing;
 pub(crate) mod residency;
 mod rest;
 mod static_mode;
 
-use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
-use neurotess::coloring::{ColorBy, VisibleValues, coloring};
+use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::overlay::Legend;
 use neurotess::render::{
     Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, ProgressiveRenderer, Scene,
     ViewParams,
 };
 
-use crate::io::frames::{FrameReader, FrameValues};
 use crate::io::task::Task;
 use crate::model::document::{Cut, Detail, Look};
 use crate::model::revision::Revision;
@@ -34,15 +32,15 @@ use crate::model::state::{Draft, Rebuilds, SpheresKey, State};
 use crate::scene::colors::{ColorInputs, color_scheme};
 use crate::scene::content::{InstancesKey, SceneContent, StatesKey};
 use crate::scene::explorer::Explorer;
-use crate::scene::picks::Picks;
 use building::Built;
 use clamped::Clamped;
-use cost_model::{CostModel, RestMode};
+use frames::RecordedValues;
 use markers::{MarkersKey, StageMarkers};
 use meshes::{DrawnMeshes, StageMeshes};
+use pace::{Pace, RestPhase};
 pub(crate) use pointing::OUTLINES;
-use pointing::{MaskKey, Resolver};
-use residency::Residency;
+use pointing::Pointing;
+use residency::Room;
 use static_mode::StaticKey;
 
 /// Draws the picture in the window.
@@ -53,23 +51,11 @@ pub struct Stage {
     adaptive: Adaptive,
     explorer: Explorer,
     clamped: Clamped,
-    /// Whether the last draft was drawn in exploration mode.
-    explored: bool,
     texture: Option<(egui::TextureId, [u32; 2], bool)>,
     /// The scene on the device.
     content: SceneContent,
-    colors: Option<ColorInputs>,
-    /// The inputs that the templates on the device were last found to fit.
-    checked: Option<Checked>,
-    /// Key of the instances on the device.
-    instances: Option<InstancesKey>,
-    /// By instance: whether it is shown.
-    shows: Arc<[bool]>,
-    /// Key of the states on the device.
-    states: Option<StatesKey>,
-    /// Near planes of the picture's camera and of the camera of frozen levels.
-    near: [Option<((Camera, SpheresKey), f64)>; 2],
-    clip: Option<((Cut, SpheresKey), Option<Clip>)>,
+    /// What of the document the device has.
+    on_device: OnDevice,
     rebuilds: Rebuilds,
     /// Legend of the picture that was drawn last.
     legend: Legend,
@@ -78,51 +64,36 @@ pub struct Stage {
     markers: StageMarkers,
     /// Meshes that are no cells.
     meshes: StageMeshes,
-    /// Reads the recording.
-    reader: Option<FrameReader>,
-    values: Option<Arc<FrameValues>>,
-    /// Where the recording has what shows in the static picture.
-    visible: Option<Arc<VisibleValues>>,
-    /// Whether values of the current frame are still to be read.
-    values_due: bool,
-    /// Whether values, or colors of markers, have changed since they were drawn.
-    revalued: bool,
+    /// Values of the recording.
+    recorded: RecordedValues,
     drawn: Option<PictureInputs>,
     /// Whether the static picture is still to be colored anew.
     recolor_due: bool,
     /// Of the last draft: what its static picture depends on.
     shape: Option<StaticKey>,
-    /// Whether a draft is what was drawn last.
-    drafted: bool,
-    moved: Instant,
-    phase: RestPhase,
-    coarser: f32,
-    slices: u32,
-    frames: VecDeque<f32>,
-    picks: Option<Picks>,
-    /// Whether `picks` belong to an earlier picture.
-    picks_stale: bool,
-    /// Whether they do not show what the current picture would, which has been passed over.
-    picks_elsewhere: bool,
-    resolver: Option<Resolver>,
-    mask: Option<MaskKey>,
-    /// Triangles and patches that the picture at rest draws, and all patches, once they are
-    /// counted.
-    counts: Option<[u64; 3]>,
-    cost_model: CostModel,
-    rest_mode: RestMode,
-    /// Patches of the neurons in the picture, and their templates.
-    patches: u64,
-    in_view: Vec<usize>,
-    /// Most bytes of templates on the device.
-    memory: Option<u64>,
-    /// Which templates refined pictures have, if not all fit.
-    residency: Option<Residency>,
-    /// In exploration mode: triangles drawn, and those needed for half a pixel, once they are
-    /// known.
-    surveyed: Option<[u64; 2]>,
-    /// Whether the last work was a slice, whose time is measured.
-    timed: bool,
+    /// What is under the cursor.
+    pointing: Pointing,
+    /// How fast drawing is, and what is drawn at rest because of that.
+    pace: Pace,
+    /// Which tracings there is room for.
+    room: Room,
+}
+
+/// What of the document the device has: what it was last found to fit.
+#[derive(Default)]
+struct OnDevice {
+    colors: Option<ColorInputs>,
+    /// The inputs of the templates.
+    checked: Option<Checked>,
+    /// Key of the instances.
+    instances: Option<InstancesKey>,
+    /// By instance: whether it is shown.
+    shows: Arc<[bool]>,
+    /// Key of the states.
+    states: Option<StatesKey>,
+    /// Near planes of the picture's camera and of the camera of frozen levels.
+    near: [Option<((Camera, SpheresKey), f64)>; 2],
+    clip: Option<((Cut, SpheresKey), Option<Clip>)>,
 }
 
 /// What templates on the device depend on: neurons, meshes, colors, the factor on radii.
@@ -138,21 +109,6 @@ struct PictureInputs {
     clamped: Revision,
     markers: Option<MarkersKey>,
     meshes: Option<DrawnMeshes>,
-}
-
-/// Phases of the full picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RestPhase {
-    /// Waits, since something has just moved.
-    Waits,
-    /// Slices are being drawn.
-    Slices,
-    /// Everything is drawn in exploration mode; finds out what it left out.
-    Surveys,
-    /// The picture is made static.
-    Collects,
-    /// Everything is drawn.
-    Done,
 }
 
 impl Stage {
@@ -176,49 +132,21 @@ impl Stage {
             adaptive,
             explorer: Explorer::default(),
             clamped: Clamped::default(),
-            explored: false,
             texture: None,
             content,
-            colors: None,
-            checked: None,
-            instances: None,
-            shows: Arc::default(),
-            states: None,
-            near: [None; 2],
-            clip: None,
+            on_device: OnDevice::default(),
             rebuilds: Rebuilds::default(),
             legend,
             building: None,
             markers: StageMarkers::new(software),
             meshes: StageMeshes::default(),
-            reader: None,
-            values: None,
-            visible: None,
-            values_due: false,
-            revalued: false,
+            recorded: RecordedValues::default(),
             drawn: None,
             recolor_due: false,
             shape: None,
-            drafted: false,
-            moved: Instant::now(),
-            phase: RestPhase::Done,
-            coarser: if software { 4.0 } else { 1.0 },
-            slices: if software { 2 } else { 1 },
-            frames: VecDeque::new(),
-            picks: None,
-            picks_stale: false,
-            picks_elsewhere: false,
-            resolver: None,
-            mask: None,
-            counts: None,
-            cost_model: CostModel::new(software),
-            rest_mode: RestMode::Refined,
-            patches: 0,
-            in_view: Vec::new(),
-            memory: None,
-            residency: None,
-            surveyed: None,
-            timed: false,
+            pointing: Pointing::default(),
+            pace: Pace::new(software),
+            room: Room::default(),
         })
     }
 
@@ -228,14 +156,14 @@ impl Stage {
     /// The device reports an error.
     pub(crate) fn another(&self) -> Result<Self, DeviceError> {
         let mut another = Self::new(self.render.clone())?;
-        another.limit_memory(self.memory);
+        another.limit_memory(self.room.memory);
         Ok(another)
     }
 
     /// Limits the memory (bytes) that tracings take on the device: one half for drafts, the other for refined pictures.
     /// Tracings that are opened from then on keep to it.
     pub fn limit_memory(&mut self, most: Option<u64>) {
-        self.memory = most;
+        self.room.memory = most;
         self.explorer.memory = most.map(|most| most / 2);
     }
 
@@ -263,14 +191,14 @@ impl Stage {
 
     /// Whether everything is drawn.
     pub fn is_settled(&self) -> bool {
-        let shown = match self.phase {
+        let shown = match self.pace.phase {
             RestPhase::Done => true,
             // Outlines and picking need ids.
             RestPhase::Collects => self.is_sharp() && self.can_pick(),
             _ => false,
         };
-        let ids_due = self.resolver.is_some();
-        let due = self.values_due || self.recolor_due || ids_due;
+        let ids_due = self.pointing.resolver.is_some();
+        let due = self.recorded.due || self.recolor_due || ids_due;
         shown && self.drawn.is_some() && !self.is_building() && !due
     }
 
@@ -279,17 +207,17 @@ impl Stage {
         format!(
             "{:?} {:?}, {} slices, {:?}; drawn {}, sharp {}, picking {}, building {}, values due {}, \
              recoloring due {}, ids due {}",
-            self.rest_mode,
-            self.phase,
-            self.slices,
-            self.cost_model,
+            self.pace.rest_mode,
+            self.pace.phase,
+            self.pace.slices,
+            self.pace.cost_model,
             self.drawn.is_some(),
             self.is_sharp(),
             self.can_pick(),
             self.is_building(),
-            self.values_due,
+            self.recorded.due,
             self.recolor_due,
-            self.resolver.is_some(),
+            self.pointing.resolver.is_some(),
         )
     }
 
@@ -300,7 +228,7 @@ impl Stage {
 
     /// Whether the picture, perhaps a draft, shows the recording's current frame.
     pub fn shows_frame(&self) -> bool {
-        !self.values_due && !self.revalued && self.drawn.is_some()
+        !self.recorded.due && !self.recorded.changed && self.drawn.is_some()
     }
 
     /// Whether the picture, perhaps a draft, shows the current neurons and colors.
@@ -342,7 +270,7 @@ impl Stage {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<Option<egui::TextureId>, DeviceError> {
-        self.picks_elsewhere = false;
+        self.pointing.elsewhere = false;
         self.take_built(state, ctx)?;
         self.update_templates(state, ctx)?;
         self.update_markers(state, ctx)?;
@@ -365,10 +293,10 @@ impl Stage {
         {
             self.leave_static();
         }
-        self.revalued |= self.take_values(state, ctx);
+        self.recorded.changed |= self.take_values(state, ctx);
         // A draft may have been drawn while the static picture was made.
         let behind = self.is_static() && !self.is_sharp();
-        let changed = behind || self.revalued || self.drawn.as_ref() != Some(&inputs);
+        let changed = behind || self.recorded.changed || self.drawn.as_ref() != Some(&inputs);
         self.recolor_due = changed && self.recolors(&inputs);
         if self.recolor_due {
             self.recolor(state, inputs, ctx)?;
@@ -380,13 +308,13 @@ impl Stage {
         self.take_ids(ctx)?;
         self.outline(state);
         state.counters.bytes = self.bytes();
-        let [triangles, patches, all] = self.counts.unwrap_or_default();
+        let [triangles, patches, all] = self.pace.counts.unwrap_or_default();
         (state.counters.triangles, state.counters.patches) = (triangles, [patches, all]);
         state.counters.rebuilds = self.rebuilds(state);
-        state.counters.frames_ms = self.frames.iter().copied().collect();
-        state.counters.draft = match self.explored {
+        state.counters.frames_ms = self.pace.frames.iter().copied().collect();
+        state.counters.draft = match self.pace.explored {
             true => Draft::Budget(self.explorer.budget()),
-            false => Draft::Error(self.coarser),
+            false => Draft::Error(self.pace.coarser),
         };
         state.counters.markers = self.markers.shown();
         state.counters.lowered = self.lowered();
@@ -405,7 +333,7 @@ impl Stage {
     ) -> Option<egui::TextureId> {
         let inputs = self.inputs(state, size, pixels_per_point);
         let before = self.drawn.map(|d| (d.params, d.instances));
-        self.picks_elsewhere = before != Some((inputs.params, inputs.instances));
+        self.pointing.elsewhere = before != Some((inputs.params, inputs.instances));
         self.texture_id()
     }
 

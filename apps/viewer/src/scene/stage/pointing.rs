@@ -61,6 +61,20 @@ impl Resolver {
     }
 }
 
+/// What is under the cursor, and outlined.
+#[derive(Default)]
+pub(super) struct Pointing {
+    pub(super) picks: Option<Picks>,
+    /// Whether `picks` belong to an earlier picture.
+    pub(super) stale: bool,
+    /// Whether they do not show what the current picture would, which has been passed over.
+    pub(super) elsewhere: bool,
+    /// Of ids that are still to arrive from the device.
+    pub(super) resolver: Option<Resolver>,
+    /// What outlines were drawn for.
+    pub(super) mask: Option<MaskKey>,
+}
+
 /// What outlines depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MaskKey {
@@ -75,24 +89,32 @@ pub(super) struct MaskKey {
 impl Stage {
     /// What is at a pixel. Nothing while something moves.
     pub fn hit_at(&self, x: f32, y: f32) -> Option<CursorHit> {
-        let picks = self.picks.as_ref().filter(|_| !self.picks_elsewhere)?;
+        let picks = self
+            .pointing
+            .picks
+            .as_ref()
+            .filter(|_| !self.pointing.elsewhere)?;
         picks.at(x, y)
     }
 
     /// The name of the opaque mesh at a pixel, where nothing else is. Nothing while something moves.
     pub fn mesh_at(&self, x: f32, y: f32) -> Option<&str> {
-        let picks = self.picks.as_ref().filter(|_| !self.picks_stale)?;
+        let picks = self
+            .pointing
+            .picks
+            .as_ref()
+            .filter(|_| !self.pointing.stale)?;
         let shown = self.meshes.shown().get(picks.mesh_at(x, y)?)?;
         Some(shown.name())
     }
 
     /// Whether it is known what is at each pixel of the current picture.
     pub fn can_pick(&self) -> bool {
-        self.picks.is_some() && !self.picks_stale && !self.picks_elsewhere
+        self.pointing.picks.is_some() && !self.pointing.stale && !self.pointing.elsewhere
     }
 
     pub(super) fn take_ids(&mut self, ctx: &egui::Context) -> Result<(), DeviceError> {
-        if self.resolver.is_none() {
+        if self.pointing.resolver.is_none() {
             return Ok(());
         }
         // Called to poll the device, so that ids arrive.
@@ -101,11 +123,11 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(5));
             return Ok(());
         };
-        let Some(resolver) = self.resolver.take() else {
+        let Some(resolver) = self.pointing.resolver.take() else {
             return Ok(());
         };
         let (content, markers, meshes) = (&self.content, &self.markers, &self.meshes);
-        self.picks_stale = false;
+        self.pointing.stale = false;
         let resolve = |id| {
             if let Some((marker, place)) = markers.picked(id) {
                 let target = HitTarget::Marker(marker);
@@ -116,7 +138,7 @@ impl Stage {
             let source = content.sources.get(instance.source)?;
             seen(hit, &source.generated.mesh, &instance.placement)
         };
-        self.picks = Some(Picks::new(size, &ids, resolve, |id| meshes.picked(id)));
+        self.pointing.picks = Some(Picks::new(size, &ids, resolve, |id| meshes.picked(id)));
         ctx.request_repaint();
         Ok(())
     }
@@ -124,7 +146,9 @@ impl Stage {
     /// Updates the outlines around selected neurons and the part under the cursor, if those have
     /// changed.
     pub(super) fn outline(&mut self, state: &State) {
-        let (Some(picks), Some(drawn), false) = (&self.picks, &self.drawn, self.picks_stale) else {
+        let (Some(picks), Some(drawn), false) =
+            (&self.pointing.picks, &self.drawn, self.pointing.stale)
+        else {
             return;
         };
         let revisions = state.document.neurons.revisions();
@@ -136,7 +160,7 @@ impl Stage {
             selection: revisions.selection,
             params: drawn.params,
         };
-        if self.mask.as_ref() == Some(&key) {
+        if self.pointing.mask.as_ref() == Some(&key) {
             return;
         }
         let facts = |neuron: usize, section: u32| {
@@ -155,6 +179,6 @@ impl Stage {
             Some((picks.size(), &mask)),
         );
         self.progressive.show(&self.gpu);
-        self.mask = Some(key);
+        self.pointing.mask = Some(key);
     }
 }

@@ -12,6 +12,18 @@ use crate::scene::templates::SceneTemplate;
 /// Bytes on the device for each tracing point, and some for somata.
 const BYTES_PER_POINT: u64 = 32;
 
+/// Which tracings there is room for on the device.
+#[derive(Default)]
+pub(super) struct Room {
+    /// Most bytes of templates on the device.
+    pub(super) memory: Option<u64>,
+    /// Which templates refined pictures have, if not all fit.
+    pub(super) residency: Option<Residency>,
+    /// Patches of the neurons in the picture, and their templates.
+    pub(super) patches: u64,
+    pub(super) in_view: Vec<usize>,
+}
+
 /// The tracings on the device.
 #[derive(Debug)]
 pub(crate) struct Residency {
@@ -95,7 +107,7 @@ struct Changes {
 impl Stage {
     /// Brings these templates and those of clamped neurons to the device, as far as they fit.
     pub(super) fn bring(&mut self, templates: &[usize]) -> Result<(), DeviceError> {
-        let Some(residency) = &mut self.residency else {
+        let Some(residency) = &mut self.room.residency else {
             return Ok(());
         };
         let instances = &self.content.instances;

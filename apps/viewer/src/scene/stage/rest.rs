@@ -30,7 +30,7 @@ macro_rules! rest_source {
         let rest_budget = $stage.rest_budget();
         let key = $stage.drawn.as_ref().and_then(|drawn| drawn.markers);
         let mut finer: Option<&mut dyn VertexSource> = None;
-        let source: Option<&mut dyn VertexSource> = match $stage.rest_mode {
+        let source: Option<&mut dyn VertexSource> = match $stage.pace.rest_mode {
             RestMode::Refined | RestMode::Coarser => {
                 $stage.adaptive.set_only(None);
                 Some(&mut $stage.adaptive)
@@ -41,8 +41,8 @@ macro_rules! rest_source {
                     finer = Some(&mut $stage.adaptive);
                 }
                 let (gpu, content) = (&$stage.gpu, &$stage.content);
-                let budget = $stage.cost_model.budget;
-                let instances = $stage.instances;
+                let budget = $stage.pace.cost_model.budget;
+                let instances = $stage.on_device.instances;
                 let explored = $stage
                     .explorer
                     .exploration(gpu, content, instances, budget, &fine, None);
@@ -71,7 +71,7 @@ impl Stage {
             return Ok(());
         };
         let (params, detail) = (drawn.params, drawn.detail);
-        let phase = self.phase;
+        let phase = self.pace.phase;
         if matches!(phase, RestPhase::Done | RestPhase::Collects) {
             self.count(state)?;
         }
@@ -79,17 +79,17 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(5));
             return Ok(());
         }
-        let waits = phase == RestPhase::Waits && self.moved.elapsed() < REST;
-        self.drafted &= waits || phase == RestPhase::Done;
+        let waits = phase == RestPhase::Waits && self.pace.moved.elapsed() < REST;
+        self.pace.drafted &= waits || phase == RestPhase::Done;
         match phase {
             RestPhase::Done => {}
             RestPhase::Waits if waits => {
-                ctx.request_repaint_after(REST.saturating_sub(self.moved.elapsed()));
+                ctx.request_repaint_after(REST.saturating_sub(self.pace.moved.elapsed()));
             }
             RestPhase::Waits => {
-                self.rest_mode = self.select_rest_mode(&params, detail.at_rest);
+                self.pace.rest_mode = self.select_rest_mode(&params, detail.at_rest);
                 // While a recording is played, a picture would be of many times.
-                self.phase = match state.playback.playing {
+                self.pace.phase = match state.playback.playing {
                     true => RestPhase::Collects,
                     false => self.begin(params, detail)?,
                 };
@@ -112,23 +112,23 @@ impl Stage {
     }
 
     fn begin(&mut self, params: ViewParams, detail: Detail) -> Result<RestPhase, DeviceError> {
-        if self.rest_mode != RestMode::Explored {
-            let in_view = std::mem::take(&mut self.in_view);
+        if self.pace.rest_mode != RestMode::Explored {
+            let in_view = std::mem::take(&mut self.room.in_view);
             let brought = self.bring(&in_view);
-            self.in_view = in_view;
+            self.room.in_view = in_view;
             brought?;
         }
         self.set_rest_detail(&params, detail);
         self.progressive.begin(params, self.steps());
-        self.cost_model.begin();
-        self.timed = false;
+        self.pace.cost_model.begin();
+        self.pace.timed = false;
         Ok(RestPhase::Slices)
     }
 
     /// Sets the detail of the picture at rest.
     pub(super) fn set_rest_detail(&mut self, params: &ViewParams, detail: Detail) {
-        let lod = match self.rest_mode {
-            RestMode::Coarser => detail.lod().coarser(self.coarser),
+        let lod = match self.pace.rest_mode {
+            RestMode::Coarser => detail.lod().coarser(self.pace.coarser),
             RestMode::Refined | RestMode::Explored => detail.lod(),
         };
         self.adaptive.set_settings(AdaptiveSettings {
@@ -145,35 +145,35 @@ impl Stage {
     pub(super) fn steps(&self) -> Steps {
         Steps {
             steps: 4,
-            slices: self.slices,
+            slices: self.pace.slices,
         }
     }
 
     fn slice(&mut self, params: ViewParams, detail: Detail) -> Result<(), DeviceError> {
-        if self.timed {
+        if self.pace.timed {
             self.learn();
-            if self.rest_mode == RestMode::Refined
+            if self.pace.rest_mode == RestMode::Refined
                 && self.select_rest_mode(&params, detail.at_rest) != RestMode::Refined
             {
                 // The next slices would be as slow: stops, and begins again in another mode.
                 self.progressive.stop();
-                self.phase = RestPhase::Waits;
+                self.pace.phase = RestPhase::Waits;
                 return Ok(());
             }
         }
         // Ids for picking are drawn as soon as the first step is shown.
         let identifies = !self.progressive.shows_draft() && self.lacks_ids();
-        self.timed = !identifies;
+        self.pace.timed = !identifies;
         if identifies {
             return self.identify(&params);
         }
         let Some(mut source) = rest_source!(self, self.fine(true)) else {
-            self.phase = RestPhase::Waits;
+            self.pace.phase = RestPhase::Waits;
             return Ok(());
         };
         self.progressive.slice(&self.gpu, &mut source)?;
         if self.progressive.progress().is_none() {
-            self.phase = match self.rest_mode {
+            self.pace.phase = match self.pace.rest_mode {
                 RestMode::Explored => RestPhase::Surveys,
                 RestMode::Refined | RestMode::Coarser => RestPhase::Collects,
             };
@@ -183,7 +183,7 @@ impl Stage {
 
     /// Whether ids for picking are neither there nor on their way.
     pub(super) fn lacks_ids(&self) -> bool {
-        self.resolver.is_none() && !self.can_pick()
+        self.pointing.resolver.is_none() && !self.can_pick()
     }
 
     /// Draws the ids of the picture at rest.
@@ -193,7 +193,7 @@ impl Stage {
             return Ok(());
         };
         self.progressive.identify(&self.gpu, &mut source, params)?;
-        self.resolver = match self.rest_mode {
+        self.pointing.resolver = match self.pace.rest_mode {
             RestMode::Refined | RestMode::Coarser => {
                 Some(Resolver::Refined(self.adaptive.resolver()))
             }
@@ -207,10 +207,11 @@ impl Stage {
         let took = self.progressive.last_ms();
         self.note_frame(took);
         self.note_slice(took);
-        if self.rest_mode == RestMode::Refined {
+        if self.pace.rest_mode == RestMode::Refined {
             // For the next picture, since the slices of this one are fixed.
-            let fitting = f64::from(self.slices) * took / SLICE_MS;
-            self.slices = ((f64::from(self.slices) + fitting) / 2.0).clamp(1.0, MOST_SLICES) as u32;
+            let fitting = f64::from(self.pace.slices) * took / SLICE_MS;
+            self.pace.slices =
+                ((f64::from(self.pace.slices) + fitting) / 2.0).clamp(1.0, MOST_SLICES) as u32;
         }
     }
 
@@ -218,12 +219,12 @@ impl Stage {
     /// is drawn again.
     fn survey(&mut self) -> Result<(), DeviceError> {
         self.learn();
-        self.phase = RestPhase::Collects;
-        let (budget, fine) = (self.cost_model.budget, self.fine(true));
+        self.pace.phase = RestPhase::Collects;
+        let (budget, fine) = (self.pace.cost_model.budget, self.fine(true));
         let Some(adaptive) = self.explorer.exploration(
             &self.gpu,
             &self.content,
-            self.instances,
+            self.on_device.instances,
             budget,
             &fine,
             None,
@@ -231,21 +232,21 @@ impl Stage {
             return Ok(());
         };
         let stats = adaptive.stats(&self.gpu)?;
-        self.surveyed = Some([stats.triangles, stats.requested]);
-        if self.cost_model.adapt(stats.requested) {
-            self.phase = RestPhase::Waits;
+        self.pace.surveyed = Some([stats.triangles, stats.requested]);
+        if self.pace.cost_model.adapt(stats.requested) {
+            self.pace.phase = RestPhase::Waits;
         }
         Ok(())
     }
 
     /// Counts triangles and patches of the picture at rest, while their panel is open.
     fn count(&mut self, state: &State) -> Result<(), DeviceError> {
-        let Some(drawn) = self.drawn.as_ref().filter(|_| self.counts.is_none()) else {
+        let Some(drawn) = self.drawn.as_ref().filter(|_| self.pace.counts.is_none()) else {
             return Ok(());
         };
         let looked_at = state.tab == Tab::Detail && state.panels;
         // In exploration mode, counting would take as long as drawing.
-        if !looked_at || self.rest_mode != RestMode::Refined {
+        if !looked_at || self.pace.rest_mode != RestMode::Refined {
             return Ok(());
         }
         let params = drawn.params;
@@ -254,7 +255,7 @@ impl Stage {
         self.adaptive.set_only(None);
         self.adaptive.prepare(&self.gpu, &frame)?;
         let stats = self.adaptive.stats(&self.gpu)?;
-        self.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
+        self.pace.counts = Some([stats.triangles, stats.patches_drawn, stats.patches]);
         Ok(())
     }
 }

@@ -57,13 +57,13 @@ impl Stage {
 
     /// Whether the static picture is worked at next, although colors have changed: in turns with drafts.
     pub(super) fn goes_on(&self, inputs: &PictureInputs) -> bool {
-        let rests = match self.phase {
+        let rests = match self.pace.phase {
             RestPhase::Collects => true,
-            RestPhase::Waits => self.moved.elapsed() >= super::rest::REST,
+            RestPhase::Waits => self.pace.moved.elapsed() >= super::rest::REST,
             _ => false,
         };
         // What stands must have been drawn: the scene may have been replaced since the draft.
-        let stands = self.drafted && self.drawn.is_some();
+        let stands = self.pace.drafted && self.drawn.is_some();
         rests && stands && self.shape == Some(StaticKey::new(inputs))
     }
 
@@ -79,12 +79,12 @@ impl Stage {
             if self.lacks_ids() {
                 self.identify(&params)?;
             }
-            self.phase = RestPhase::Done;
+            self.pace.phase = RestPhase::Done;
             return Ok(());
         }
         let steps = self.steps();
         let Some(mut source) = rest_source!(self, self.fine(true)) else {
-            self.phase = RestPhase::Waits;
+            self.pace.phase = RestPhase::Waits;
             return Ok(());
         };
         if self.progressive.static_progress().is_none() {
@@ -92,7 +92,7 @@ impl Stage {
                 .progressive
                 .begin_static(&self.gpu, &source, &params, steps)?;
             if !begun {
-                self.phase = RestPhase::Done;
+                self.pace.phase = RestPhase::Done;
             }
         } else if self.progressive.static_slice(&self.gpu, &mut source)? {
             self.find_visible();
@@ -104,17 +104,17 @@ impl Stage {
     pub(super) fn find_visible(&mut self) {
         let recording = self.content.recording.as_ref();
         let picture = self.progressive.static_picture();
-        self.visible = recording
+        self.recorded.visible = recording
             .zip(picture)
             .map(|((recording, _), picture)| Arc::new(recording.visible(picture.keys())));
-        self.values = None;
+        self.recorded.values = None;
     }
 
     /// Forgets the static picture.
     pub(super) fn leave_static(&mut self) {
         self.progressive.drop_static();
-        if self.visible.take().is_some() {
-            self.values = None;
+        if self.recorded.visible.take().is_some() {
+            self.recorded.values = None;
         }
     }
 
@@ -129,7 +129,11 @@ impl Stage {
             ctx.request_repaint_after(Duration::from_millis(3));
             return Ok(());
         }
-        let values = match (&self.visible, self.values.as_deref(), &state.playback.facts) {
+        let values = match (
+            &self.recorded.visible,
+            self.recorded.values.as_deref(),
+            &state.playback.facts,
+        ) {
             (None, ..) => None,
             (_, Some(FrameValues::Visible(values)), Some(facts)) => {
                 Some(fractions(values, facts.range))
@@ -140,14 +144,14 @@ impl Stage {
         if self.progressive.is_recolored() {
             self.note_frame(self.progressive.last_ms());
         }
-        if self.states != Some(inputs.states) {
+        if self.on_device.states != Some(inputs.states) {
             self.set_states(state, inputs.states);
         }
         self.progressive.recolor(&self.gpu, values.as_deref())?;
         self.recolor_due = false;
         self.drawn = Some(inputs);
         self.legend = self.whole_legend();
-        self.revalued = false;
+        self.recorded.changed = false;
         Ok(())
     }
 
@@ -156,7 +160,11 @@ impl Stage {
         let picture = self.progressive.static_picture()?;
         Some(StaticFigures {
             colors: picture.keys().len(),
-            compartments: self.visible.as_ref().map(|visible| visible.compartments()),
+            compartments: self
+                .recorded
+                .visible
+                .as_ref()
+                .map(|visible| visible.compartments()),
             bytes: picture.bytes(),
         })
     }
