@@ -39,7 +39,7 @@ fn measure(count: usize) {
     run(&mut window, Command::OpenSample(Kind::Granule));
     // The list and the panels would be measured too; the baseline of before had them hidden.
     let state = &mut viewer(&mut window).state;
-    state.panels = std::env::var_os("PANELS").is_some();
+    state.layout.panels = std::env::var_os("PANELS").is_some();
     for i in 1..count {
         let mut neuron = Neuron::new(SourceId(0), format!("n{i}"));
         neuron.placement.translation.x = 300.0 * (i % 100) as f64;

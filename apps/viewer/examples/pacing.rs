@@ -71,7 +71,15 @@ fn main() {
     state.document.grid = true;
     state.run(Command::Home);
     settle(&mut window);
-    let adapter = window.state().as_ref().unwrap().state.adapter.0.clone();
+    let adapter = window
+        .state()
+        .as_ref()
+        .unwrap()
+        .state
+        .drawing
+        .adapter
+        .0
+        .clone();
     println!("{neurons} neurons on {adapter}");
     turn(&mut window);
     let times = turn(&mut window);
@@ -83,7 +91,7 @@ fn main() {
     let sharp = rest.elapsed();
     settle(&mut window);
     report("input to its draft", times);
-    let counters = &window.state().as_ref().unwrap().state.counters;
+    let counters = &window.state().as_ref().unwrap().state.drawing.counters;
     println!("at rest lowered: {:?}", counters.lowered);
     println!(
         "last input to the first step of the full picture: {:.0} ms, to the last one: {:.0} ms",

@@ -110,7 +110,15 @@ fn play(circuit: &Path, report: &Path) {
     let clock = Instant::now();
     run(&mut window, Edit::SetReport(Some(report.to_path_buf())));
     println!("report chosen to full picture: {:.0} ms", ms(clock));
-    let adapter = window.state().as_ref().unwrap().state.adapter.0.clone();
+    let adapter = window
+        .state()
+        .as_ref()
+        .unwrap()
+        .state
+        .drawing
+        .adapter
+        .0
+        .clone();
     println!("drawn on {adapter}");
     let axis = state(&mut window).playback.facts.as_ref().unwrap().time;
     turn(&mut window);

@@ -434,11 +434,15 @@ mod tests {
             panic!("{message:?}");
         };
         state.note_saved(result);
-        let [problem] = &state.problems[..] else {
-            panic!("{:?}", state.problems);
+        let [problem] = &state.messages.problems[..] else {
+            panic!("{:?}", state.messages.problems);
         };
         assert_eq!(problem.what, "save");
         assert!(problem.why.contains("patch 5 has no corner"), "{problem:?}");
-        assert!(state.status.starts_with("Not saved"), "{}", state.status);
+        assert!(
+            state.messages.status.starts_with("Not saved"),
+            "{}",
+            state.messages.status
+        );
     }
 }

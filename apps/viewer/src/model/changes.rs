@@ -67,10 +67,10 @@ mod tests {
     }
 
     fn asks(state: &mut State, command: Command) -> bool {
-        state.dialog = Dialog::Nothing;
+        state.layout.dialog = Dialog::Nothing;
         state.effects.clear();
         state.run(command);
-        let asks = matches!(state.dialog, Dialog::Unsaved(_));
+        let asks = matches!(state.layout.dialog, Dialog::Unsaved(_));
         assert_eq!(asks, state.effects.is_empty());
         asks
     }

@@ -143,7 +143,7 @@ impl State {
             Command::SavePicture(picture) if !picture.replace => vec![picture_file(&picture.out)],
             Command::SaveFilm(film) if !film.picture.replace => {
                 let over_time = film.time.is_some() && self.playback.facts.is_some();
-                let count = length(self.key_views.len(), film.frames, over_time);
+                let count = length(self.views.key_views.len(), film.frames, over_time);
                 let mut files = film_files(&film.picture.out, count);
                 let video = files.first().filter(|_| film.video && count > 1);
                 files.extend(video.map(|first| video_file(first)));
@@ -278,7 +278,7 @@ mod tests {
             neuron.selected = i == 0;
             state.document.neurons.push(neuron);
         }
-        state.key_views = vec![View::default(), View::default()];
+        state.views.key_views = vec![View::default(), View::default()];
         let folder = tempfile::tempdir().expect("a folder");
         for (file, command) in every_kind(&state, folder.path()) {
             assert!(matches!(state.request(command.clone()), Dialog::Nothing));

@@ -124,7 +124,7 @@ fn read_markers(state: &mut State, drawn: &mut SessionPicture) {
         let content = io::markers::read(&source, &circuits, &progress);
         state.set_markers(source, content);
     }
-    let problems = std::mem::take(&mut state.problems);
+    let problems = std::mem::take(&mut state.messages.problems);
     let failures = problems
         .into_iter()
         .map(|problem| (problem.what, problem.why));

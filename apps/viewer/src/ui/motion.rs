@@ -58,7 +58,7 @@ impl Motion {
     /// Moves the camera by mouse or keys, which ends a flight.
     pub(crate) fn steer(&mut self, state: &mut State, view: View) {
         self.flight = None;
-        state.fitted = None;
+        state.views.fitted = None;
         state.view = view;
     }
 
@@ -124,7 +124,7 @@ impl Motion {
     /// view.
     pub(crate) fn reshape(&mut self, state: &mut State, aspect: f64, flies: bool) {
         let (_, resized) = self.window;
-        let fitted = state.fitted.is_some();
+        let fitted = state.views.fitted.is_some();
         let Some(view) = state.reshape(aspect) else {
             return;
         };

@@ -39,16 +39,16 @@ fn clamp_all(window: &mut Window) {
 fn clamped_neurons_are_as_in_a_full_picture_whatever_is_explored() {
     let mut window = explored();
     let reduced = drawn(&mut window);
-    assert!(state(&mut window).counters.lowered.is_some());
+    assert!(state(&mut window).drawing.counters.lowered.is_some());
     clamp_all(&mut window);
-    assert_eq!(state(&mut window).counters.clamped, [2, 2]);
+    assert_eq!(state(&mut window).drawing.counters.clamped, [2, 2]);
     assert!(
-        state(&mut window).counters.lowered.is_some(),
+        state(&mut window).drawing.counters.lowered.is_some(),
         "it is explored still"
     );
     let clamped = drawn(&mut window);
     at_rest(&mut window, RestChoice::Full);
-    assert!(state(&mut window).counters.lowered.is_none());
+    assert!(state(&mut window).drawing.counters.lowered.is_none());
     let full = drawn(&mut window);
     assert!(
         differing(&reduced, &full) > 500,
@@ -66,7 +66,7 @@ fn clamped_neurons_are_as_in_a_full_picture_whatever_is_explored() {
     run(&mut window, Edit::Select(vec![0], false));
     run(&mut window, Edit::Clamp(true));
     run(&mut window, Edit::SelectNone);
-    assert_eq!(state(&mut window).counters.clamped, [1, 1]);
+    assert_eq!(state(&mut window).drawing.counters.clamped, [1, 1]);
     let one = drawn(&mut window);
     let [from_reduced, from_full] = [&reduced, &full].map(|other| differing(&one, other));
     assert!(
@@ -84,11 +84,11 @@ fn clamped_neurons_are_recolored_and_picked_like_the_others() {
     assert!(viewer(&mut window).stage.can_pick());
     set_look(&mut window, |look| look.color_by = ColorBy::PathDistance);
     rest(&mut window);
-    let rebuilds = state(&mut window).counters.rebuilds;
+    let rebuilds = state(&mut window).drawing.counters.rebuilds;
     set_look(&mut window, |look| look.color_map = ColorMap::Plasma);
     assert!(viewer(&mut window).stage.is_static());
     assert_eq!(
-        state(&mut window).counters.rebuilds.templates,
+        state(&mut window).drawing.counters.rebuilds.templates,
         rebuilds.templates
     );
     let recolored = drawn(&mut window);

@@ -69,9 +69,9 @@ fn tracings_and_folders_are_opened_and_broken_ones_reported() {
     drop_on(&mut window, &[&at("one.swc"), &at("cells")]);
     assert_eq!(names(&mut window), ["one", "three", "two"]);
     for bad in ["bad.swc", "bad.h5", "note.txt", "missing.swc"] {
-        state(&mut window).problems.clear();
+        state(&mut window).messages.problems.clear();
         drop_on(&mut window, &[&at(bad)]);
-        let problems = &state(&mut window).problems;
+        let problems = &state(&mut window).messages.problems;
         assert_eq!(problems.len(), 1, "{bad}: {problems:?}");
         assert!(problems[0].what.ends_with(bad), "{problems:?}");
     }
@@ -92,7 +92,7 @@ fn what_is_dropped_while_others_are_read_comes_after_them() {
     }
     settle(&mut window);
     assert_eq!(names(&mut window), ["a", "b", "c"]);
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -118,7 +118,11 @@ fn a_circuit_and_its_report_are_dropped_together() {
             .is_some_and(|f| f.spikes)
     );
     drop_on(&mut window, &[&spikes, &report]);
-    assert!(state(&mut window).problems[0].why.contains("one report"));
+    assert!(
+        state(&mut window).messages.problems[0]
+            .why
+            .contains("one report")
+    );
     assert_eq!(state(&mut window).document.report, Some(report));
 }
 
@@ -136,7 +140,11 @@ fn a_session_is_dropped() {
     assert!(state(&mut other).document.neurons[0].hidden);
     fs::write(&file, "version = 1\ngrid = 3\n").expect("written");
     drop_on(&mut other, &[&file]);
-    assert!(state(&mut other).problems[0].why.contains("line 2"));
+    assert!(
+        state(&mut other).messages.problems[0]
+            .why
+            .contains("line 2")
+    );
     assert_eq!(names(&mut other).len(), 2, "nothing is lost");
 }
 

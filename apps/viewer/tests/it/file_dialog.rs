@@ -78,7 +78,7 @@ fn no_key_reaches_the_scene_while_a_dialog_is_open() {
     settle(&mut window);
     let after = (state(&mut window).view, state(&mut window).document.clone());
     assert_eq!(after, before);
-    assert!(matches!(state(&mut window).dialog, Dialog::Files(_)));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Files(_)));
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -97,11 +97,14 @@ fn a_session_is_not_replaced_unasked() {
     window.run_steps(3);
     let kept = || fs::read_to_string(&other).expect("there");
     assert_eq!(kept(), "of someone else");
-    assert!(matches!(state(&mut window).dialog, Dialog::Replace(..)));
+    assert!(matches!(
+        state(&mut window).layout.dialog,
+        Dialog::Replace(..)
+    ));
     // Another name is to be typed.
     window.get_by_label("Cancel").click();
     window.run_steps(6);
-    assert!(matches!(state(&mut window).dialog, Dialog::Files(_)));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Files(_)));
     let line = window.get_by_role(Role::TextInput);
     assert!(
         line.value()
@@ -117,5 +120,5 @@ fn a_session_is_not_replaced_unasked() {
     window.run_steps(6);
     key(&mut window, Key::Enter, Modifiers::NONE);
     window.run_steps(3);
-    assert!(matches!(state(&mut window).dialog, Dialog::Nothing));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Nothing));
 }

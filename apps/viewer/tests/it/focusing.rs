@@ -21,12 +21,12 @@ fn focus_and_a_double_click_in_the_tree_go_to_the_part() {
     run_undrawn(&mut window, Command::Focus);
     let whole = distance(&mut window);
     let part = |part| Some(Picked { neuron: 0, part });
-    state(&mut window).picked = part(CellPart::Soma);
+    state(&mut window).pointing.picked = part(CellPart::Soma);
     run_undrawn(&mut window, Command::Focus);
     let soma = distance(&mut window);
     assert!(soma < 0.3 * whole, "{soma} of {whole}");
     // A click on a neurite selects its cell.
-    state(&mut window).picked = part(CellPart::Section(0));
+    state(&mut window).pointing.picked = part(CellPart::Section(0));
     run_undrawn(&mut window, Command::Focus);
     let again = distance(&mut window);
     assert!((again / whole - 1.0).abs() < 1e-9, "{again} {whole}");

@@ -89,10 +89,10 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
             slow_frame(&mut window, key(keys.logical_key, keys.modifiers).to_vec());
             let ran = std::mem::take(&mut *list.borrow_mut());
             assert_eq!(ran, [now.command], "{keys:?}");
-            if !matches!(state(&mut window).dialog, Dialog::Nothing) {
+            if !matches!(state(&mut window).layout.dialog, Dialog::Nothing) {
                 slow_frame(&mut window, key(Key::Escape, Modifiers::NONE).to_vec());
                 assert!(
-                    matches!(state(&mut window).dialog, Dialog::Nothing),
+                    matches!(state(&mut window).layout.dialog, Dialog::Nothing),
                     "{keys:?}"
                 );
                 assert!(list.borrow().is_empty(), "escape closes, and nothing else");
@@ -109,7 +109,7 @@ fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
     let events = keys.into_iter().flat_map(|k| key(k, Modifiers::NONE));
     slow_frame(&mut window, events.collect());
     assert_eq!(list.borrow().len(), keys.len(), "{:?}", list.borrow());
-    assert!(state(&mut window).panels && state(&mut window).document.grid);
+    assert!(state(&mut window).layout.panels && state(&mut window).document.grid);
     assert_eq!(window.ctx.memory(egui::Memory::focused), None);
 }
 

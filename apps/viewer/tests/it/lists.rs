@@ -42,7 +42,7 @@ fn many(count: usize) -> Window {
 fn the_list_counts_what_it_shows() {
     let mut window = many(12);
     window.get_by_label("12 neurons");
-    state(&mut window).search = "_1".into();
+    state(&mut window).layout.search = "_1".into();
     window.run_steps(2);
     window.get_by_label("2 of 12 neurons");
     assert!(window.query_by_label("cell_03").is_none());
@@ -59,7 +59,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     assert!(!inside(&window, "cell_37"));
     let soma = hit_at(&mut window, glam::DVec3::new(37.0 * 90.0, 0.0, 0.0));
     click(&mut window, soma, Modifiers::NONE);
-    let picked = state(&mut window).picked.expect("picked");
+    let picked = state(&mut window).pointing.picked.expect("picked");
     assert_eq!(picked.neuron, 37);
     assert!(inside(&window, "cell_37"));
     // A section of a cell with many.
@@ -81,10 +81,14 @@ fn a_pick_scrolls_both_lists_to_its_line() {
         part: CellPart::Section(last as u32),
     };
     let state_of = state(&mut window);
-    (state_of.picked, state_of.reveal) = (Some(picked), Some(picked));
+    (state_of.pointing.picked, state_of.pointing.reveal) = (Some(picked), Some(picked));
     window.run_steps(40);
     assert!(inside(&window, &label), "{label}");
-    assert_eq!(state(&mut window).reveal, None, "and then the list is free");
+    assert_eq!(
+        state(&mut window).pointing.reveal,
+        None,
+        "and then the list is free"
+    );
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -93,7 +97,7 @@ fn what_is_hidden_is_not_marked() {
     let row = window.get_by_label("cell_01").rect().center();
     window.event(Event::PointerMoved(row));
     window.run_steps(3);
-    let hovered = |window: &mut Window| state(window).hovered.map(|h| h.neuron);
+    let hovered = |window: &mut Window| state(window).pointing.hovered.map(|h| h.neuron);
     assert_eq!(hovered(&mut window), Some(1));
     run(&mut window, Edit::SetHidden(1, true));
     window.event(Event::PointerMoved(row + Vec2::new(1.0, 0.0)));
@@ -188,7 +192,7 @@ fn memory_is_shown_whatever_was_opened() {
     run(&mut window, Command::SaveSession(file.clone()));
     run(&mut window, Command::Show(Tab::Detail));
     for _ in 0..2 {
-        let counters = &state(&mut window).counters;
+        let counters = &state(&mut window).drawing.counters;
         assert!(
             counters.bytes.iter().all(|bytes| *bytes > 0),
             "{:?}",

@@ -67,11 +67,18 @@ fn two_clicks_are_a_distance_with_its_path() {
     window.key_press(Key::M);
     window.step();
     settle(&mut window);
-    assert!(state(&mut window).measuring.is_some());
+    assert!(state(&mut window).tools.measuring.is_some());
     click_at(&mut window, from);
     let selected = state(&mut window).document.selected().count();
     assert_eq!(selected, 0, "clicks measure only");
-    assert!(state(&mut window).measuring.expect("on").first.is_some());
+    assert!(
+        state(&mut window)
+            .tools
+            .measuring
+            .expect("on")
+            .first
+            .is_some()
+    );
     click_at(&mut window, to);
     let dimensions = state(&mut window).document.dimensions.to_vec();
     let [Dimension::Distance { from: a, to: b }] = dimensions[..] else {
@@ -99,7 +106,7 @@ fn two_clicks_are_a_distance_with_its_path() {
     run(&mut window, Edit::SelectAll);
     click_at(&mut window, from);
     let tools = [(); 3].map(|()| {
-        let tool = state(&mut window).measuring;
+        let tool = state(&mut window).tools.measuring;
         window.key_press(Key::Escape);
         window.step();
         settle(&mut window);
@@ -282,7 +289,7 @@ fn dimensions_go_with_neurons_sessions_and_saved_pictures() {
     let back = state(&mut other).document.dimensions.to_vec();
     assert_eq!(back, [between, Dimension::Diameter { at }]);
     assert!(state(&mut other).figures().iter().all(Option::is_some));
-    assert!(state(&mut other).problems.is_empty());
+    assert!(state(&mut other).messages.problems.is_empty());
     // A tracing that is another one at that place: the dimension is not there, and says so.
     let text = fs::read_to_string(&file).expect("saved");
     let granule = text.replace("sample:star", "sample:motor");

@@ -65,7 +65,7 @@ fn a_mesh_is_shown_changed_undone_and_removed() {
     run(&mut window, Command::Open(vec![file.clone()]));
     rest(&mut window);
     assert_eq!(entries(&mut window), [MeshEntry::new(file, 0)]);
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     let solid = drawn(&mut window);
     let covered = differing(&plain, &solid);
     assert!(covered > 10_000, "{covered} pixels");
@@ -195,11 +195,11 @@ fn what_cannot_be_read_is_told_and_tried_again() {
     let bad = folder.path().join("bad.ply");
     fs::write(&bad, "ply\nformat ascii 1.0\nelement vertex no\n").expect("written");
     run(&mut window, Command::Open(vec![file, bad.clone()]));
-    let problems = state(&mut window).problems.clone();
+    let problems = state(&mut window).messages.problems.clone();
     assert_eq!(problems.len(), 1, "{problems:?}");
     assert!(problems[0].what.ends_with("bad.ply") && problems[0].why.contains("line 3"));
     assert_eq!(entries(&mut window).len(), 2, "the list tells why");
-    state(&mut window).problems.clear();
+    state(&mut window).messages.problems.clear();
     fs::write(
         &bad,
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
@@ -209,7 +209,7 @@ fn what_cannot_be_read_is_told_and_tried_again() {
     .expect("written");
     run(&mut window, Edit::RemoveMesh(1));
     run(&mut window, Command::OpenMeshes(vec![bad]));
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]

@@ -40,10 +40,10 @@ fn an_own_color_recolors_the_picture_at_rest() {
     let mut window = with_samples(&[Kind::Pyramidal]);
     rest(&mut window);
     assert!(!has_orange(&mut window));
-    let before = state(&mut window).counters.rebuilds;
+    let before = state(&mut window).drawing.counters.rebuilds;
     set_look(&mut window, color_axon);
     assert!(viewer(&mut window).stage.is_static() && viewer(&mut window).stage.is_sharp());
-    let after = state(&mut window).counters.rebuilds;
+    let after = state(&mut window).drawing.counters.rebuilds;
     let colors = after.colors;
     assert!(colors > before.colors);
     assert_eq!(after, Rebuilds { colors, ..before }, "colors only");
@@ -154,7 +154,11 @@ fn palettes_and_sessions_carry_own_colors() {
     fs::write(&file, "[types]\naxon = 3\n").expect("written");
     run(&mut other, Command::OpenPalette(file.clone()));
     assert!(state(&mut other).document.look.own_colors.is_empty());
-    let problem = state(&mut other).problems.pop().expect("a problem");
+    let problem = state(&mut other)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(problem.why.starts_with("line 2: "), "{problem:?}");
 
     let mut other = self::window();

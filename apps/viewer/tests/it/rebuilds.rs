@@ -27,7 +27,7 @@ fn many() -> Window {
 }
 
 fn rebuilds(window: &mut Window) -> Rebuilds {
-    state(window).counters.rebuilds
+    state(window).drawing.counters.rebuilds
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]

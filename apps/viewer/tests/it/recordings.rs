@@ -71,9 +71,9 @@ fn neurons_of_one_tracing_have_their_own_colors() {
     // The color goes with the neuron when others go.
     run(&mut window, Edit::Select(vec![0, 1], false));
     run(&mut window, Edit::Remove);
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     set_look(&mut window, |look| look.attribute = "weather".into());
-    let problems = &state(&mut window).problems;
+    let problems = &state(&mut window).messages.problems;
     assert!(
         problems[0]
             .why
@@ -104,7 +104,7 @@ fn a_stick_of_two_points_shows_all_its_compartments() {
     run(&mut window, Edit::Select(vec![0], false));
     run(&mut window, Edit::Isolate);
     run(&mut window, Edit::SelectNone);
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     run(&mut window, Command::Look(Side::Front));
     let bands = bands(&mut window);
     // Seven values that rise and fall: six changes of direction.
@@ -191,7 +191,7 @@ fn a_report_is_played_stepped_and_saved() {
         d.neurons.iter().map(|n| n.node.map(|n| n.node)).collect()
     };
     assert_eq!(nodes(&again), nodes(&document));
-    assert_eq!(state(&mut other).problems, []);
+    assert_eq!(state(&mut other).messages.problems, []);
     assert!(viewer(&mut other).fatal.is_none());
     rest(&mut other);
     let after = other.render().expect("a picture");
@@ -279,10 +279,14 @@ fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
         (nodes, "neither a report nor spikes"),
         (folder.path().join("none.h5"), "cannot be read"),
     ] {
-        state(&mut window).problems.clear();
+        state(&mut window).messages.problems.clear();
         run(&mut window, Edit::SetReport(Some(file)));
         let state = state(&mut window);
-        assert!(state.problems[0].why.contains(said), "{:?}", state.problems);
+        assert!(
+            state.messages.problems[0].why.contains(said),
+            "{:?}",
+            state.messages.problems
+        );
         assert!(state.playback.facts.is_none());
     }
     run(&mut window, Edit::SetReport(None));
@@ -298,7 +302,7 @@ fn a_report_without_a_circuit_waits_for_it() {
     let at = |name: &str| folder.path().join(name);
     run(&mut window, Command::OpenSample(Kind::Star));
     run(&mut window, Edit::SetReport(Some(at("voltage.h5"))));
-    let problems = &state(&mut window).problems;
+    let problems = &state(&mut window).messages.problems;
     assert!(problems[0].why.contains("open its circuit"), "{problems:?}");
     run(
         &mut window,
@@ -337,7 +341,12 @@ fn a_film_runs_through_the_time_of_a_report() {
     };
     run(&mut window, Command::SaveFilm(film.clone()));
     let five: Vec<String> = (0..5).map(|i| format!("f_{i:04}.png")).collect();
-    assert_eq!(names(&out), five, "{:?}", state(&mut window).problems);
+    assert_eq!(
+        names(&out),
+        five,
+        "{:?}",
+        state(&mut window).messages.problems
+    );
     let bytes = |i: usize| fs::read(out.join(&five[i])).expect("there");
     assert_ne!(bytes(0), bytes(4));
     // Two views and the time: as many as from view to view, and one more.
@@ -351,7 +360,7 @@ fn a_film_runs_through_the_time_of_a_report() {
     along.video = true;
     run(&mut window, Command::SaveFilm(along));
     // Where ffmpeg is not installed the pictures are there, and a problem names it.
-    let problems = std::mem::take(&mut state(&mut window).problems);
+    let problems = std::mem::take(&mut state(&mut window).messages.problems);
     assert_eq!(out.join("g.mp4").exists(), problems.is_empty());
     if let Some(problem) = problems.first() {
         assert!(problem.why.contains("ffmpeg"), "{problems:?}");
@@ -367,7 +376,7 @@ fn a_film_runs_through_the_time_of_a_report() {
     run(&mut window, Edit::SetReport(None));
     run(&mut window, Command::SaveFilm(film));
     assert!(
-        state(&mut window).problems[0]
+        state(&mut window).messages.problems[0]
             .why
             .contains("keep two views")
     );
@@ -393,7 +402,7 @@ fn ffmpeg_makes_a_video_of_a_film() {
         video: true,
     };
     run(&mut window, Command::SaveFilm(film));
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     let video = fs::read(folder.path().join("f.mp4")).expect("a video");
     assert_eq!(&video[4..8], b"ftyp");
 }
@@ -429,7 +438,7 @@ fn a_film_that_is_stopped_leaves_whole_pictures() {
         let whole = bytes.starts_with(b"\x89PNG") && bytes.ends_with(b"IEND\xaeB`\x82");
         assert!(whole, "{name}");
     }
-    let why = &state(&mut window).problems[0].why;
+    let why = &state(&mut window).messages.problems[0].why;
     assert!(
         why.contains(&format!("stopped after {} of 501", names.len())),
         "{why}"

@@ -48,10 +48,12 @@ fn wait(window: &mut Window, what: &str, until: impl Fn(&mut Window) -> bool) {
 
 /// Stops what is saved.
 fn stop(window: &mut Window, at: &str) {
-    state(window).status.clear();
+    state(window).messages.status.clear();
     state(window).run(Command::Cancel);
     let begun = Instant::now();
-    wait(window, "stopped", |w| state(w).status.contains("stopped"));
+    wait(window, "stopped", |w| {
+        state(w).messages.status.contains("stopped")
+    });
     note!("stopped {at} after {:?}", begun.elapsed());
     settle(window);
 }
@@ -127,7 +129,9 @@ fn saved_pictures_have_the_axes_that_show() {
         };
         state(window).run(Command::SavePicture(options));
         // When the file is there, the next one is not taken yet.
-        wait(window, "the picture", |w| state(w).status.contains(name));
+        wait(window, "the picture", |w| {
+            state(w).messages.status.contains(name)
+        });
         fs::read(out).expect("saved")
     };
     let with = picture(&mut window, "with.png");
@@ -160,7 +164,7 @@ fn meshes_for_simulation_are_saved_by_the_panel_and_stop() {
     window.run_steps(2);
     window.get_by_label("Save 1 mesh").click();
     wait(&mut window, "the mesh", |w| {
-        state(w).status.contains("faces")
+        state(w).messages.status.contains("faces")
     });
     let checked = check(&read(&out).expect("a mesh"));
     assert_eq!(checked.self_intersections, 0);

@@ -32,7 +32,7 @@ fn spines_grow_at_random_and_are_undone() {
     let (grown, more) = spines(&mut window, 0);
     assert!(grown > 200 && more > patches + 4 * grown, "{grown}, {more}");
     assert_eq!(spines(&mut window, 1).0, 0, "the other is not selected");
-    let status = state(&mut window).status.clone();
+    let status = state(&mut window).messages.status.clone();
     assert!(status.contains(&format!("{grown} spines")), "{status}");
     // Figures are those of the cell with its spines.
     let source = state(&mut window).source_of(0).expect("a source");
@@ -57,7 +57,7 @@ fn spines_grow_at_random_and_are_undone() {
     assert_eq!(spines(&mut window, 0), (grown, more));
     run(&mut window, Edit::GrowSpines(None));
     assert_eq!(spines(&mut window, 0), (0, patches));
-    assert!(state(&mut window).problems.is_empty());
+    assert!(state(&mut window).messages.problems.is_empty());
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
@@ -93,7 +93,11 @@ fn a_file_that_tells_of_no_spines_is_a_problem_that_is_told() {
     let mut window = with_samples(&[Kind::Star]);
     run(&mut window, grow(SpinePlaces::File));
     settle(&mut window);
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(problem.why.contains("tells of no spines"), "{problem:?}");
     assert_eq!(spines(&mut window, 0).0, 0);
 }
@@ -113,7 +117,11 @@ fn spines_grow_where_a_cell_of_a_circuit_gets_synapses() {
     // Two cells share each tracing.
     run(&mut window, grow(SpinePlaces::Synapses));
     settle(&mut window);
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(problem.why.contains("for itself"), "{problem:?}");
     run(&mut window, Command::Undo);
     run(&mut window, Edit::SelectOthers);
@@ -122,5 +130,5 @@ fn spines_grow_where_a_cell_of_a_circuit_gets_synapses() {
     let (grown, _) = spines(&mut window, 0);
     // A gap is on the soma, and some synapses have no room.
     assert!((EACH / 2..=EACH).contains(&grown), "{grown}");
-    assert!(state(&mut window).problems.is_empty());
+    assert!(state(&mut window).messages.problems.is_empty());
 }

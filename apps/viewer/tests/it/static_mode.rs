@@ -23,8 +23,12 @@ fn at_rest_a_recording_recolors_the_fine_picture() {
     run(&mut window, Command::Go(turned));
     run(&mut window, Command::Go(view));
     rest(&mut window);
-    let rebuilds = state(&mut window).counters.rebuilds;
-    let figures = state(&mut window).counters.static_picture.expect("made");
+    let rebuilds = state(&mut window).drawing.counters.rebuilds;
+    let figures = state(&mut window)
+        .drawing
+        .counters
+        .static_picture
+        .expect("made");
     let compartments = figures.compartments.expect("a recording");
     assert!(
         compartments > 0 && compartments <= figures.colors,
@@ -38,7 +42,7 @@ fn at_rest_a_recording_recolors_the_fine_picture() {
     set_look(&mut window, |look| look.color_map = ColorMap::Plasma);
     run(&mut window, Edit::Select(vec![2], false));
     assert!(viewer(&mut window).stage.is_static() && viewer(&mut window).stage.is_sharp());
-    let after = state(&mut window).counters.rebuilds;
+    let after = state(&mut window).drawing.counters.rebuilds;
     assert_eq!(
         (after.templates, after.instances),
         (rebuilds.templates, rebuilds.instances)
@@ -80,7 +84,7 @@ fn what_is_played_becomes_fine_when_the_camera_rests() {
     state(&mut window).run(Command::Look(Side::Front));
     wait(&mut window, |w| !viewer(w).stage.is_static());
     wait(&mut window, |w| viewer(w).stage.is_static());
-    assert!(state(&mut window).problems.is_empty());
+    assert!(state(&mut window).messages.problems.is_empty());
 }
 
 #[neurotess_testing::test(needs(gpu))]

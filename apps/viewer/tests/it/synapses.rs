@@ -49,7 +49,7 @@ fn set_markers(window: &mut Window, change: impl FnOnce(&mut MarkerOptions)) {
 
 /// Number of all synapses and points of the picture.
 fn all(window: &mut Window) -> Option<usize> {
-    let counters = &state(window).counters;
+    let counters = &state(window).drawing.counters;
     counters.markers.map(|[_, _, all]| all)
 }
 
@@ -101,7 +101,11 @@ fn synapses_show_and_are_undone() {
     assert_eq!(all(&mut window), Some(CELLS));
     set_markers(&mut window, |markers| markers.side = SynapseSide::Efferent);
     assert_eq!(all(&mut window), None);
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(problem.why.contains("efferent_surface_x"), "{problem:?}");
     run(&mut window, Command::Undo);
     run(&mut window, Command::Undo);
@@ -109,7 +113,7 @@ fn synapses_show_and_are_undone() {
     assert_eq!(all(&mut window), None);
     let left = differing(&without, &drawn(&mut window));
     assert!(left < shown / 4, "{left} of {shown} pixels");
-    assert!(state(&mut window).problems.is_empty());
+    assert!(state(&mut window).messages.problems.is_empty());
 }
 
 #[neurotess_testing::test(needs(gpu))]
@@ -117,12 +121,12 @@ fn only_those_of_cells_that_are_shown_and_selected() {
     let (mut window, _folder) = with_synapses();
     run(&mut window, Edit::ShowSynapses(true));
     rest(&mut window);
-    let before = state(&mut window).counters.rebuilds;
+    let before = state(&mut window).drawing.counters.rebuilds;
     run(&mut window, Edit::Select(vec![2], false));
     assert_eq!(all(&mut window), Some(EACH + 1));
     // Markers at other places are another picture, of the same cells.
     rest(&mut window);
-    let after = state(&mut window).counters.rebuilds;
+    let after = state(&mut window).drawing.counters.rebuilds;
     assert_eq!(
         (after.templates, after.proxies),
         (before.templates, before.proxies)
@@ -158,7 +162,7 @@ fn colors_of_synapses_change_without_drawing() {
     run(&mut window, Edit::ShowSynapses(true));
     set_markers(&mut window, |markers| markers.size = 12.0);
     rest(&mut window);
-    let before = state(&mut window).counters.rebuilds;
+    let before = state(&mut window).drawing.counters.rebuilds;
     let pure = |window: &mut Window| {
         let image = window.render().expect("a picture");
         let is = |p: &&[u8]| p[0] > 180 && p[1] < 90 && p[2] > 180;
@@ -170,7 +174,7 @@ fn colors_of_synapses_change_without_drawing() {
         look.own_colors.set(target, [255, 0, 255]);
     });
     assert!(viewer(&mut window).stage.is_static() && viewer(&mut window).stage.is_sharp());
-    let after = state(&mut window).counters.rebuilds;
+    let after = state(&mut window).drawing.counters.rebuilds;
     assert_eq!(
         (after.templates, after.instances),
         (before.templates, before.instances)
@@ -196,7 +200,11 @@ fn colors_of_synapses_change_without_drawing() {
     set_markers(&mut window, |markers| {
         markers.property = Some("conductance".into());
     });
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(
         problem.why.contains("has no number 'conductance'"),
         "{problem:?}"
@@ -220,7 +228,7 @@ fn a_click_tells_which_synapse_it_is() {
     assert!(found.len() > CELLS * EACH / 2, "{} are seen", found.len());
     let (marker, at) = found[found.len() / 2];
     click(&mut window, at, Modifiers::NONE);
-    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    assert_eq!(state(&mut window).pointing.picked_marker, Some(marker));
     assert_eq!(
         state(&mut window).document.selected().count(),
         0,
@@ -237,7 +245,7 @@ fn a_click_tells_which_synapse_it_is() {
     let number = facts.rows.iter().find(|(name, _)| name == "conductance");
     let number = number.and_then(|(_, text)| text.parse::<f64>().ok());
     assert!(number.is_some_and(|n| n > 0.0), "{facts:?}");
-    assert!(state(&mut window).status.starts_with("Synapse"));
+    assert!(state(&mut window).messages.status.starts_with("Synapse"));
     // Paths of both cells to their somata.
     let paths = state(&mut window).partner_paths();
     let roles: Vec<Role> = paths.iter().map(|path| path.role).collect();
@@ -262,11 +270,11 @@ fn a_click_tells_which_synapse_it_is() {
     viewer(&mut window).stage.limit_patches(Some(0));
     let turned = state(&mut window).view.orbited(0.2, 0.0, glam::DVec3::Y);
     run(&mut window, Command::Go(turned));
-    assert!(state(&mut window).counters.lowered.is_some());
+    assert!(state(&mut window).drawing.counters.lowered.is_some());
     assert!(seen(&mut window).len() > CELLS * EACH / 2);
     // Switched off, it is forgotten.
     run(&mut window, Edit::ShowSynapses(false));
-    assert_eq!(state(&mut window).picked_marker, None);
+    assert_eq!(state(&mut window).pointing.picked_marker, None);
     assert!(state(&mut window).partner_paths().is_empty());
     assert!(window.query_by_label("Select its cell").is_none());
 }
@@ -321,7 +329,11 @@ fn synapses_that_only_name_sections_are_shown_picked_and_moved() {
         markers.size = 12.0;
     });
     assert_eq!(all(&mut window), Some(2 * CELLS - 1));
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(problem.why.contains("name sections"), "{problem:?}");
     // The first ones are on the somata.
     let places = viewer(&mut window).stage.marker_positions();
@@ -332,7 +344,7 @@ fn synapses_that_only_name_sections_are_shown_picked_and_moved() {
     }
     let (marker, at) = seen(&mut window)[0];
     click(&mut window, at, Modifiers::NONE);
-    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    assert_eq!(state(&mut window).pointing.picked_marker, Some(marker));
     let facts = state(&mut window).marker_facts(marker).expect("facts");
     assert!(facts.neurons[0].is_some(), "{facts:?}");
     // They go along with a cell that is moved.
@@ -383,7 +395,7 @@ fn contact_discs_are_picked_and_undone() {
     assert!(found.len() > EACH / 2, "{} are seen", found.len());
     let (marker, at) = found[0];
     click(&mut window, at, Modifiers::NONE);
-    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    assert_eq!(state(&mut window).pointing.picked_marker, Some(marker));
     run(&mut window, Command::Undo);
     rest(&mut window);
     assert_eq!(
@@ -422,7 +434,7 @@ fn points_of_a_table_show_beside_any_cell() {
     assert!(!legend_names(&mut window).contains(&"spines".to_owned()));
     let (marker, at) = seen(&mut window)[0];
     click(&mut window, at, Modifiers::NONE);
-    assert_eq!(state(&mut window).picked_marker, Some(marker));
+    assert_eq!(state(&mut window).pointing.picked_marker, Some(marker));
     let facts = state(&mut window).marker_facts(marker).expect("facts");
     assert!(facts.title.starts_with("Point ") && facts.neurons == [None; 2]);
     assert!(facts.rows.iter().any(|(name, _)| name == "weight"));
@@ -438,7 +450,11 @@ fn points_of_a_table_show_beside_any_cell() {
     // Broken ones are told of, and nothing else is lost.
     fs::write(&file, "x,y,z\n1,2,up\n").expect("written");
     run(&mut window, Command::OpenPoints(file.clone()));
-    let problem = state(&mut window).problems.pop().expect("a problem");
+    let problem = state(&mut window)
+        .messages
+        .problems
+        .pop()
+        .expect("a problem");
     assert!(
         problem.why.starts_with("line 2: ") && problem.what.ends_with("spines.csv"),
         "{problem:?}"
@@ -491,9 +507,9 @@ fn sessions_and_saved_pictures_have_synapses_and_points() {
     run(&mut other, Command::Open(vec![at("mine.neurotess")]));
     assert_eq!(all(&mut other), Some(CELLS * (EACH + 1) + 40));
     assert!(
-        state(&mut other).problems.is_empty(),
+        state(&mut other).messages.problems.is_empty(),
         "{:?}",
-        state(&mut other).problems
+        state(&mut other).messages.problems
     );
 }
 
@@ -509,7 +525,11 @@ fn too_many_for_the_pixels_are_thinned_out_and_counted() {
     let far = state(&mut window).view.zoomed(12.0, glam::DVec3::ZERO);
     run(&mut window, Command::Go(far));
     rest(&mut window);
-    let [drawn, in_view, all] = state(&mut window).counters.markers.expect("markers");
+    let [drawn, in_view, all] = state(&mut window)
+        .drawing
+        .counters
+        .markers
+        .expect("markers");
     assert_eq!((in_view, all), (60_000, 60_000));
     assert!(drawn < in_view / 2, "{drawn}");
     let said = format!("{} of 60\u{a0}000 markers drawn", grouped(drawn));
@@ -541,8 +561,8 @@ fn reading_can_be_stopped() {
     let mut other = with_samples(&[Kind::Star]);
     run(&mut other, Edit::ShowSynapses(true));
     other.run_steps(5);
-    let [problem] = &state(&mut other).problems[..] else {
-        panic!("{:?}", state(&mut other).problems);
+    let [problem] = &state(&mut other).messages.problems[..] else {
+        panic!("{:?}", state(&mut other).messages.problems);
     };
     assert!(problem.why.contains("SONATA circuit"), "{problem:?}");
 }

@@ -53,11 +53,14 @@ fn closing_asks_while_there_are_unsaved_edits() {
     run(&mut window, Edit::SetGrid(true));
     presses_ctrl_q(&mut window);
     assert!(!asked(&window).contains(&ViewportCommand::Close));
-    assert!(matches!(state(&mut window).dialog, Dialog::Unsaved(_)));
+    assert!(matches!(
+        state(&mut window).layout.dialog,
+        Dialog::Unsaved(_)
+    ));
     window.run_steps(8);
     window.get_by_label("Cancel").click();
     window.run_steps(3);
-    assert!(matches!(state(&mut window).dialog, Dialog::Nothing));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Nothing));
     // The window's button.
     root_events(&mut window).push(ViewportEvent::Close);
     window.step();
@@ -100,7 +103,7 @@ fn edits_are_kept_and_offered_by_the_next_window() {
     next.step();
     keeping(&mut next, folder.path(), Duration::ZERO);
     next.run_steps(8);
-    assert!(matches!(state(&mut next).dialog, Dialog::Recover(_)));
+    assert!(matches!(state(&mut next).layout.dialog, Dialog::Recover(_)));
     next.get_by_label("Open it").click();
     wait(&mut next, |w| state(w).document.neurons.len() == 1);
     next.step();

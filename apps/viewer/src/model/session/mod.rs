@@ -155,10 +155,10 @@ impl Session {
             grid: document.grid,
             y_down: document.y_down,
             view: state.view,
-            split: state.split.map(Split::kept),
+            split: state.views.split.map(Split::kept),
             look: document.look.clone(),
             detail: document.detail,
-            key_view: state.key_views.clone(),
+            key_view: state.views.key_views.clone(),
             saved_view: document.saved_views.clone(),
             report: document.report.as_ref().map(|file| relative(file, folder)),
             markers: MarkerOptions {

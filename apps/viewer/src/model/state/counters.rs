@@ -1,5 +1,14 @@
 //! Figures of the picture, for the level-of-detail panel.
 
+/// What draws, and what it took.
+#[derive(Clone, Debug, Default)]
+pub struct Drawing {
+    /// Counters of the level of detail.
+    pub counters: Counters,
+    /// Name of the adapter, and whether it draws in software.
+    pub adapter: (String, bool),
+}
+
 /// What a frame drew, and what it took.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counters {

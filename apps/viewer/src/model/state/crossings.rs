@@ -33,9 +33,9 @@ impl State {
         self.crossings.open = open;
         self.crossings.pointed = None;
         if open {
-            (self.tab, self.panels) = (Tab::Inspect, true);
+            (self.layout.tab, self.layout.panels) = (Tab::Inspect, true);
             if self.crossing_key().is_none() {
-                self.status = "Select the neurons whose crossings are to be listed".into();
+                self.messages.status = "Select the neurons whose crossings are to be listed".into();
             }
         }
     }

@@ -177,7 +177,7 @@ impl State {
     pub(crate) fn found(&self) -> Arc<Vec<usize>> {
         let members = self.document.neurons.revisions().members;
         let derive = || {
-            let text = self.search.to_lowercase();
+            let text = self.layout.search.to_lowercase();
             let neurons = self.document.neurons.iter().enumerate();
             let found =
                 neurons.filter(|(_, n)| text.is_empty() || n.name.to_lowercase().contains(&text));
@@ -185,7 +185,7 @@ impl State {
         };
         self.derived
             .found
-            .get((members, self.search.clone()), derive)
+            .get((members, self.layout.search.clone()), derive)
     }
 
     /// Sums over the selected neurons; over all if none is selected.

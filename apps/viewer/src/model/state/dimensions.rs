@@ -81,7 +81,7 @@ impl State {
 
     /// Ends measuring, or only forgets the first end of a distance.
     pub(super) fn leave_measuring(&mut self) {
-        self.measuring = match self.measuring {
+        self.tools.measuring = match self.tools.measuring {
             Some(Measuring { first: Some(_), .. }) => Some(Measuring::default()),
             _ => None,
         };
@@ -89,14 +89,14 @@ impl State {
 
     /// Forgets places of the tool that are not there any more.
     pub(super) fn forget_lost_ends(&mut self) {
-        let Some(tool) = self.measuring else {
+        let Some(tool) = self.tools.measuring else {
             return;
         };
         let is_there = |anchor: &Anchor| {
             let source = self.source_of(anchor.neuron);
             source.is_some_and(|source| anchor.is_on(&source.morphology))
         };
-        self.measuring = Some(Measuring {
+        self.tools.measuring = Some(Measuring {
             first: tool.first.filter(is_there),
             under: tool.under.filter(|pointed| is_there(&pointed.at)),
         });
@@ -104,11 +104,11 @@ impl State {
 
     /// After a dimension was added: the next click begins another one. Says what was kept.
     pub(super) fn end_measure(&mut self) {
-        if let Some(tool) = &mut self.measuring {
+        if let Some(tool) = &mut self.tools.measuring {
             tool.first = None;
         }
         if let Some(Some(figure)) = self.figures().last() {
-            self.status = format!("Kept: {}", figure.label.join(", "));
+            self.messages.status = format!("Kept: {}", figure.label.join(", "));
         }
     }
 
@@ -122,7 +122,7 @@ impl State {
                 _ => None,
             },
         };
-        self.status = match &text {
+        self.messages.status = match &text {
             Some(_) => "Copied".into(),
             None => "There is nothing to copy: keep a dimension first (M)".into(),
         };

@@ -89,8 +89,8 @@ impl State {
             MarkerRef::Synapse(_) => markers.synapses,
             MarkerRef::Point(_) => points,
         };
-        self.hovered_marker = self.hovered_marker.filter(shows);
-        self.picked_marker = self.picked_marker.filter(shows);
+        self.pointing.hovered_marker = self.pointing.hovered_marker.filter(shows);
+        self.pointing.picked_marker = self.pointing.picked_marker.filter(shows);
     }
 
     /// Takes what was read of synapses and points.
@@ -106,16 +106,16 @@ impl State {
         match &content {
             Ok(MarkerContent::Synapses(read)) => {
                 let all = read.iter().map(|of| of.edges.len() as u64).sum();
-                self.status = format!("{} synapses read", grouped(all));
+                self.messages.status = format!("{} synapses read", grouped(all));
             }
             Ok(MarkerContent::Points(table)) => {
                 let all = table.positions.len() as u64;
-                self.status = format!("{} points of {what}", grouped(all));
+                self.messages.status = format!("{} points of {what}", grouped(all));
             }
             Err(why) => self.problem(what, why),
         }
         self.marker_data.set(source, content);
         // Numbers of rows are those of what was read before.
-        (self.hovered_marker, self.picked_marker) = (None, None);
+        (self.pointing.hovered_marker, self.pointing.picked_marker) = (None, None);
     }
 }

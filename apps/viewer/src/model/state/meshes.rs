@@ -48,7 +48,7 @@ impl State {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let name = name.into_owned();
         let faces = read.as_ref().map(ReadMesh::faces);
-        self.status = match faces {
+        self.messages.status = match faces {
             Ok(faces) => format!("{name}: {} faces", grouped(faces as u64)),
             Err(_) => format!("{name} does not show"),
         };

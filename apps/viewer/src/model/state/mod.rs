@@ -6,15 +6,19 @@ mod derived;
 mod dimension_table;
 mod dimensions;
 mod effect;
+mod layout;
 mod leaving;
 mod markers;
 mod meshes;
+mod messages;
 mod partners;
 mod parts;
 mod picked;
 mod placing;
 mod plots;
+mod pointing;
 mod split;
+mod tools;
 mod traces;
 mod views;
 
@@ -30,35 +34,29 @@ use crate::model::command::{Command, Edit, Tab, Toggles};
 use crate::model::crossings::CrossingList;
 use crate::model::document::{Document, SourceId};
 use crate::model::history::History;
-use crate::model::markers::{MarkerData, MarkerRef};
+use crate::model::markers::MarkerData;
 use crate::model::measuring::Measuring;
 use crate::model::meshes::MeshData;
-use crate::model::placing::Placing;
 use crate::model::playback::Playback;
 use crate::model::plots::MeasurePlot;
-use crate::model::save::{SaveForm, SaveRequest, Written};
+use crate::model::save::{SaveForm, SaveRequest};
 use crate::model::settings::Settings;
 use crate::model::sources::{self, Source, Sources};
-use crate::model::split::Split;
 use crate::model::traces::TraceData;
 use crate::model::view::View;
 
-pub use counters::{Counters, Draft, Lowered, Rebuilds, StaticFigures};
+pub use counters::{Counters, Draft, Drawing, Lowered, Rebuilds, StaticFigures};
 use derived::Derived;
 pub(crate) use derived::{PlacementsKey, SpheresKey};
 pub use effect::{Dialog, Effect};
+pub use layout::Layout;
 pub(crate) use meshes::MeshesKey;
+pub use messages::{Messages, Problem};
 pub use picked::{CellPart, Picked};
+pub use pointing::Pointing;
+pub use tools::Tools;
 pub(crate) use traces::part_name;
-
-/// Something that went wrong or is shown with reduced quality, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
-    /// The file or thing.
-    pub what: String,
-    /// The reason, and what to do.
-    pub why: String,
-}
+pub use views::Views;
 
 /// All that the window shows.
 pub struct State {
@@ -88,68 +86,28 @@ pub struct State {
     pub crossings: CrossingList,
     /// The camera's view.
     pub view: View,
-    /// The side from which the view shows everything, until it is moved by hand.
-    pub fitted: Option<Side>,
-    /// The other one of two views side by side.
-    pub split: Option<Split>,
-    /// Views of a film.
-    pub key_views: Vec<View>,
-    /// The view that levels are frozen for.
-    pub frozen: Option<View>,
-    /// The part under the cursor, in the picture or in the tree.
-    pub hovered: Option<Picked>,
-    /// The synapse or point under the cursor.
-    pub hovered_marker: Option<MarkerRef>,
-    /// The neurite whose ring's slider is under the cursor or being dragged.
-    pub touched: Option<(SourceId, u32)>,
-    /// The part that was clicked last.
-    pub picked: Option<Picked>,
-    /// The synapse or point that was clicked last.
-    pub picked_marker: Option<MarkerRef>,
-    /// The tool that measures, while it is on.
-    pub measuring: Option<Measuring>,
-    /// The handles that move and turn the selected cells, while they show.
-    pub placing: Option<Placing>,
-    /// Angles (degrees) by which cells were turned last.
-    pub(crate) typed_angles: Option<glam::DVec3>,
-    /// Whether the window presents: the whole screen, and no panels.
-    pub presenting: bool,
-    /// Whether the scene turns slowly.
-    pub turning: bool,
-    /// Whether the window was asked to fill the screen.
-    pub full_screen: bool,
-    /// The dimension whose line in the list is under the cursor.
-    pub pointed_dimension: Option<usize>,
-    /// Problems, in the order in which they occurred.
-    pub problems: Vec<Problem>,
-    /// What was done last, for the status bar.
-    pub status: String,
-    /// The panel on the right.
-    pub tab: Tab,
-    /// Text to search the list by.
-    pub search: String,
-    /// The dialog that is open.
-    pub dialog: Dialog,
-    /// Whether the side panels show.
-    pub panels: bool,
+    /// What is under the cursor, and what was clicked last.
+    pub pointing: Pointing,
+    /// Tools that take clicks in the picture.
+    pub tools: Tools,
+    /// Which parts of the window show.
+    pub layout: Layout,
+    /// Views beside the current one, and how it came to be.
+    pub views: Views,
+    /// What is said, and what went wrong.
+    pub messages: Messages,
+    /// What draws, and what it took.
+    pub drawing: Drawing,
     /// Settings, which are kept between starts.
     pub settings: Settings,
     /// Inputs of the panel that saves.
     pub save: SaveForm,
-    /// Counters of the level of detail.
-    pub counters: Counters,
-    /// Name of the adapter, and whether it draws in software.
-    pub adapter: (String, bool),
     /// The session's file, once there is one.
     pub session: Option<PathBuf>,
-    /// Width by height of the picture.
-    pub aspect: f64,
     /// What the program must do outside the state.
     pub effects: Vec<Effect>,
     /// Commands that panels have requested.
     pub requests: Vec<Command>,
-    /// A part that the tree must scroll to.
-    pub reveal: Option<Picked>,
     derived: Derived,
 }
 
@@ -174,37 +132,17 @@ impl State {
             measures: MeasurePlot::default(),
             crossings: CrossingList::default(),
             view: View::default(),
-            fitted: None,
-            split: None,
-            key_views: Vec::new(),
-            frozen: None,
-            hovered: None,
-            hovered_marker: None,
-            touched: None,
-            picked: None,
-            picked_marker: None,
-            measuring: None,
-            placing: None,
-            typed_angles: None,
-            presenting: false,
-            turning: false,
-            full_screen: false,
-            pointed_dimension: None,
-            problems: Vec::new(),
-            status: String::new(),
-            tab: Tab::default(),
-            search: String::new(),
-            dialog: Dialog::Nothing,
-            panels: true,
+            pointing: Pointing::default(),
+            tools: Tools::default(),
+            layout: Layout::default(),
+            views: Views::default(),
+            messages: Messages::default(),
+            drawing: Drawing::default(),
             save: SaveForm::new(&settings),
             settings,
-            counters: Counters::default(),
-            adapter: (String::new(), false),
             session: None,
-            aspect: 1.0,
             effects: Vec::new(),
             requests: Vec::new(),
-            reveal: None,
             derived: Derived::default(),
         }
     }
@@ -215,23 +153,23 @@ impl State {
             orthographic: self.view.orthographic,
             y_down: self.document.y_down,
             grid: self.document.grid,
-            frozen: self.frozen.is_some(),
+            frozen: self.views.frozen.is_some(),
             caches: self.settings.caches,
             dark: self.settings.dark,
             playing: self.playback.playing,
-            measuring: self.measuring.is_some(),
+            measuring: self.tools.measuring.is_some(),
             synapses: self.document.markers.synapses,
             contacts: self.document.markers.shape == MarkerShape::Contact,
             traces: self.traces.open,
             crossings: self.crossings.open,
             lasso: self.settings.lasso,
-            placing: self.placing.is_some(),
+            placing: self.tools.placing.is_some(),
             clamped: self.document.neurons.clamps_selected(),
-            split: self.split.is_some(),
-            linked: self.split.is_some_and(|split| split.linked),
-            presenting: self.presenting,
-            turning: self.turning,
-            full_screen: self.full_screen,
+            split: self.views.split.is_some(),
+            linked: self.views.split.is_some_and(|split| split.linked),
+            presenting: self.layout.presenting,
+            turning: self.views.turning,
+            full_screen: self.layout.full_screen,
         }
     }
 
@@ -246,7 +184,7 @@ impl State {
             Command::Undo => {
                 let y_down = self.document.y_down;
                 let mut number = self.changes.document();
-                self.status = match self.history.undo(&mut self.document, &mut number) {
+                self.messages.status = match self.history.undo(&mut self.document, &mut number) {
                     Some(name) => {
                         self.changes.note_return(number);
                         format!("Undone: {}", name.to_lowercase())
@@ -259,7 +197,7 @@ impl State {
             Command::Redo => {
                 let y_down = self.document.y_down;
                 let mut number = self.changes.document();
-                self.status = match self.history.redo(&mut self.document, &mut number) {
+                self.messages.status = match self.history.redo(&mut self.document, &mut number) {
                     Some(name) => {
                         self.changes.note_return(number);
                         format!("Redone: {}", name.to_lowercase())
@@ -269,9 +207,9 @@ impl State {
                 self.forget_what_is_gone();
                 self.show_upright(y_down);
             }
-            Command::AskFiles(purpose) => self.dialog = Dialog::Files(purpose),
+            Command::AskFiles(purpose) => self.layout.dialog = Dialog::Files(purpose),
             Command::Quit | Command::Open(_) if self.loses_work(&command) => {
-                self.dialog = Dialog::Unsaved(Box::new(command));
+                self.layout.dialog = Dialog::Unsaved(Box::new(command));
             }
             Command::Unasked(command) => self.run_unasked(*command),
             Command::Open(_) => self.run_unasked(command),
@@ -285,13 +223,13 @@ impl State {
             Command::Recover(open) => self.effects.push(Effect::Recover(open)),
             Command::Look(side) => {
                 self.effects.push(Effect::Go(self.fit(side)));
-                self.fitted = Some(side);
+                self.views.fitted = Some(side);
             }
             Command::Home => self.run(Command::Look(Side::Front)),
             Command::Focus => self.focus(),
             Command::Go(view) => {
                 self.effects.push(Effect::Go(view));
-                self.fitted = None;
+                self.views.fitted = None;
             }
             Command::SaveView => self.save_view(),
             Command::GoSaved(index) => self.go_to_saved(index),
@@ -303,11 +241,11 @@ impl State {
             Command::SetLasso(lasso) => {
                 self.settings.lasso = lasso;
                 let area = if lasso { "lasso" } else { "rectangle" };
-                self.status = format!("Ctrl and a drag select with a {area}");
+                self.messages.status = format!("Ctrl and a drag select with a {area}");
             }
             Command::SetPlacing(on) => self.set_placing(on),
             Command::EndPlacing => {
-                if let Some(placing) = &mut self.placing {
+                if let Some(placing) = &mut self.tools.placing {
                     placing.drag = None;
                 }
             }
@@ -316,7 +254,7 @@ impl State {
             Command::SetPresenting(on) => self.present(on),
             Command::SetSplit(on) => self.set_split(on),
             Command::SetLinked(on) => self.set_linked(on),
-            Command::SetTurning(on) => self.turning = on,
+            Command::SetTurning(on) => self.views.turning = on,
             Command::SetFullScreen(on) => self.fill_screen(on),
             Command::ShowTraces(open) => self.traces.open = open,
             Command::PlotMeasure(form) => self.measures.form = form,
@@ -326,8 +264,8 @@ impl State {
             Command::Seek(time) => self.playback.seek(time),
             Command::StepTime(frames) => self.playback.step(frames),
             Command::SetPace(pace) => self.playback.pace = pace,
-            Command::SetFrozen(frozen) => self.frozen = frozen.then_some(self.view),
-            Command::Show(tab) => (self.tab, self.panels) = (tab, true),
+            Command::SetFrozen(frozen) => self.views.frozen = frozen.then_some(self.view),
+            Command::Show(tab) => (self.layout.tab, self.layout.panels) = (tab, true),
             Command::ToggleKeys => self.toggle(Dialog::Keys),
             Command::TogglePalette => self.toggle(Dialog::Palette(String::new(), 0)),
             Command::ToggleProblems => self.toggle(Dialog::Problems),
@@ -335,29 +273,30 @@ impl State {
             Command::SetDark(dark) => {
                 self.settings.dark = dark;
             }
-            Command::TogglePanels => self.panels = !self.panels,
+            Command::TogglePanels => self.layout.panels = !self.layout.panels,
             Command::SetMeasuring(on) => {
-                self.measuring = on.then(Measuring::default);
+                self.tools.measuring = on.then(Measuring::default);
                 if on {
-                    self.tab = Tab::Inspect;
+                    self.layout.tab = Tab::Inspect;
                 }
             }
             Command::MeasureFrom(anchor) => {
-                self.measuring = Some(Measuring {
+                self.tools.measuring = Some(Measuring {
                     first: Some(anchor),
-                    ..self.measuring.unwrap_or_default()
+                    ..self.tools.measuring.unwrap_or_default()
                 });
             }
             Command::LeaveMeasuring => self.leave_measuring(),
             Command::CopyDimensions(which) => self.copy_dimensions(which),
             Command::AddKeyView => {
-                self.key_views.push(self.view);
+                self.views.key_views.push(self.view);
                 self.changes.note_lasting();
-                self.status = format!("Key view {} kept (Save, Film)", self.key_views.len());
+                self.messages.status =
+                    format!("Key view {} kept (Save, Film)", self.views.key_views.len());
             }
             Command::DropKeyView(which) => {
-                if which < self.key_views.len() {
-                    self.key_views.remove(which);
+                if which < self.views.key_views.len() {
+                    self.views.key_views.remove(which);
                     self.changes.note_lasting();
                 }
             }
@@ -405,8 +344,8 @@ impl State {
     }
 
     fn toggle(&mut self, dialog: Dialog) {
-        let same = std::mem::discriminant(&self.dialog) == std::mem::discriminant(&dialog);
-        self.dialog = if same { Dialog::Nothing } else { dialog };
+        let same = std::mem::discriminant(&self.layout.dialog) == std::mem::discriminant(&dialog);
+        self.layout.dialog = if same { Dialog::Nothing } else { dialog };
     }
 
     /// Shows everything anew after an undo, if y points the other way.
@@ -431,8 +370,8 @@ impl State {
     fn forget_what_is_gone(&mut self) {
         let neurons = self.document.neurons.len();
         let there = |p: &Picked| p.neuron < neurons;
-        self.hovered = self.hovered.filter(there);
-        self.picked = self.picked.filter(there);
+        self.pointing.hovered = self.pointing.hovered.filter(there);
+        self.pointing.picked = self.pointing.picked.filter(there);
         self.forget_lost_ends();
         self.forget_lost_markers();
     }
@@ -457,32 +396,5 @@ impl State {
             _ => return None,
         };
         Some((self.circuits.shared(node.circuit)?, node.node))
-    }
-
-    /// Notes how saving ended.
-    pub(crate) fn note_saved(&mut self, result: Result<Written, String>) {
-        match result {
-            Ok(Written { status, remarks }) => {
-                self.status = status;
-                for (what, why) in remarks {
-                    self.problem(what, why);
-                }
-            }
-            Err(why) => {
-                self.status = format!("Not saved: {why}");
-                self.problem("save", why);
-            }
-        }
-    }
-
-    /// Adds a problem.
-    pub fn problem(&mut self, what: impl Into<String>, why: impl Into<String>) {
-        let problem = Problem {
-            what: what.into(),
-            why: why.into(),
-        };
-        if !self.problems.contains(&problem) {
-            self.problems.push(problem);
-        }
     }
 }

@@ -12,13 +12,13 @@ impl State {
     /// Paths from the synapse that was clicked to the somata of its cells, of those that are in the list.
     pub fn partner_paths(&self) -> Arc<Vec<PartnerPath>> {
         let key = (
-            self.picked_marker,
+            self.pointing.picked_marker,
             self.marker_data.revision(),
             self.placements_key(),
             self.sources.geometry(),
         );
         self.derived.partners.get(key, || {
-            let picked = self.picked_marker;
+            let picked = self.pointing.picked_marker;
             picked.map_or(Vec::new(), |marker| self.paths_of(marker))
         })
     }

@@ -24,7 +24,7 @@ impl State {
     /// Where the handles of the selected cells are (µm): in the middle of their somata. None while they do not
     /// show.
     pub fn pivot(&self) -> Option<DVec3> {
-        self.placing.as_ref()?;
+        self.tools.placing.as_ref()?;
         self.middle_of_selected()
     }
 
@@ -44,7 +44,7 @@ impl State {
         let &first = self.document.neurons.selected().first()?;
         let rotation = self.document.neurons.get(first)?.placement.rotation;
         // One rotation has many angles: those that were typed stay.
-        let typed = self.typed_angles;
+        let typed = self.tools.typed_angles;
         let typed = typed.filter(|&typed| placing::rotation(typed).angle_between(rotation) < 1e-6);
         Some(PlaceNumbers {
             position,
@@ -55,7 +55,7 @@ impl State {
     /// What moves and turns the selected cells, together, to where they are by other numbers.
     pub(crate) fn placed_at(&mut self, numbers: PlaceNumbers) -> Option<Edit> {
         let now = self.place_numbers()?;
-        self.typed_angles = Some(numbers.rotation);
+        self.tools.typed_angles = Some(numbers.rotation);
         let turn = placing::rotation(numbers.rotation) * placing::rotation(now.rotation).inverse();
         let turns = numbers.rotation != now.rotation;
         let neurons = &self.document.neurons;
@@ -75,11 +75,11 @@ impl State {
     pub(super) fn set_placing(&mut self, on: bool) {
         // Side by side it would do nothing.
         let possible = on && !self.document.grid;
-        self.placing = possible.then(Placing::default);
+        self.tools.placing = possible.then(Placing::default);
         if possible {
-            self.measuring = None;
+            self.tools.measuring = None;
         }
-        self.status = match (on, self.document.grid, self.document.neurons.selected()) {
+        self.messages.status = match (on, self.document.grid, self.document.neurons.selected()) {
             (false, ..) => "Cells stay where they are".into(),
             (true, true, _) => {
                 "Side by side, cells cannot be moved: G places them as traced".into()
@@ -107,7 +107,7 @@ impl State {
             pivot,
             before: before.collect(),
         };
-        if let Some(placing) = &mut self.placing {
+        if let Some(placing) = &mut self.tools.placing {
             placing.drag = Some(drag);
         }
     }
@@ -116,13 +116,13 @@ impl State {
     pub(super) fn duplicate(&mut self) {
         let count = self.document.neurons.selected().len();
         if count == 0 {
-            self.status = "Select the cells to copy".into();
+            self.messages.status = "Select the cells to copy".into();
             return;
         }
         let (low, high) = extent(&self.outline(|n| n.selected));
         let width = BESIDE * (high - low).x.max(0.0);
         self.run(Edit::Duplicate(DVec3::X * width));
-        self.status = match count {
+        self.messages.status = match count {
             _ if self.document.grid => "Copied; G places cells as traced, then P moves them".into(),
             1 => "A copy is beside it: P moves and turns it".into(),
             n => format!("{n} copies are beside them: P moves and turns them"),
@@ -138,7 +138,7 @@ impl State {
             .map(|&i| (i, neurons[i].traced))
             .filter(|&(i, traced)| neurons[i].placement != traced)
             .collect();
-        self.status = match back.len() {
+        self.messages.status = match back.len() {
             0 => "None of the selected cells was moved".into(),
             n => format!("{n} put back"),
         };
@@ -150,14 +150,14 @@ impl State {
 
     /// Begins or ends a presentation.
     pub(super) fn present(&mut self, on: bool) {
-        (self.presenting, self.turning) = (on, on);
+        (self.layout.presenting, self.views.turning) = (on, on);
         self.fill_screen(on);
     }
 
     /// Fills the screen, or leaves it.
     pub(super) fn fill_screen(&mut self, on: bool) {
-        if self.full_screen != on {
-            self.full_screen = on;
+        if self.layout.full_screen != on {
+            self.layout.full_screen = on;
             self.effects.push(Effect::FullScreen(on));
         }
     }
@@ -248,7 +248,7 @@ mod tests {
             for command in [Command::Duplicate, Edit::SetGrid(true).into()] {
                 let mut state = state();
                 state.view = state.fit(neurotess::render::Side::Front);
-                state.fitted = fitted.then_some(neurotess::render::Side::Front);
+                state.views.fitted = fitted.then_some(neurotess::render::Side::Front);
                 state.run(command.clone());
                 let [Effect::Go(view)] = state.effects[..] else {
                     panic!("{command:?} does not fit the camera");
@@ -257,7 +257,7 @@ mod tests {
                 let middle = (low + high) / 2.0;
                 let away = view.camera().target().distance(middle);
                 assert!(away < 0.1 * (high - low).length(), "{command:?}: {away}");
-                assert_eq!(state.fitted.is_some(), fitted);
+                assert_eq!(state.views.fitted.is_some(), fitted);
             }
         }
     }
@@ -267,9 +267,13 @@ mod tests {
         let mut state = state();
         state.run(Edit::SetGrid(true));
         state.run(Command::SetPlacing(true));
-        assert!(state.placing.is_none() && state.status.contains("cannot be moved"));
+        assert!(state.tools.placing.is_none() && state.messages.status.contains("cannot be moved"));
         state.run(Command::Duplicate);
-        assert!(!state.status.contains("P moves and"), "{}", state.status);
+        assert!(
+            !state.messages.status.contains("P moves and"),
+            "{}",
+            state.messages.status
+        );
     }
 
     #[test]
@@ -312,6 +316,6 @@ mod tests {
         assert_eq!(state.document.neurons[1].placement, Placement::default());
         state.run(Edit::SelectNone);
         state.run(Command::PutBack);
-        assert!(state.status.starts_with("None"));
+        assert!(state.messages.status.starts_with("None"));
     }
 }

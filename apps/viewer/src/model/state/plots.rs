@@ -60,7 +60,7 @@ impl State {
         };
         match plot.filter(|plot| !plot.is_empty()) {
             Some(plot) => self.save(SaveRequest::Plot(path, plot)),
-            None => self.status = "Not saved: there is nothing in the plot yet".into(),
+            None => self.messages.status = "Not saved: there is nothing in the plot yet".into(),
         }
     }
 }

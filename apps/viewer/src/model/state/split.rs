@@ -11,11 +11,11 @@ use crate::model::split::{Split, following};
 impl State {
     /// Shows two views, or one.
     pub(super) fn set_split(&mut self, on: bool) {
-        if self.split.is_some() == on {
+        if self.views.split.is_some() == on {
             return;
         }
         if !on {
-            self.split = None;
+            self.views.split = None;
             return;
         }
         // From the side, so that both together show all of it.
@@ -24,17 +24,17 @@ impl State {
         } else {
             DVec3::Y
         };
-        let side = Some(Side::Right).filter(|_| self.fitted == Some(Side::Front));
+        let side = Some(Side::Right).filter(|_| self.views.fitted == Some(Side::Front));
         let view = match side {
             Some(side) => self.fit(side),
             None => self.view.orbited(-FRAC_PI_2, 0.0, upwards),
         };
-        self.split = Some(Split {
+        self.views.split = Some(Split {
             fitted: side,
-            aspect: self.aspect,
+            aspect: self.views.aspect,
             ..Split::new(view)
         });
-        self.status = "Keys are for the view that was clicked last".into();
+        self.messages.status = "Keys are for the view that was clicked last".into();
     }
 
     /// Links the two views, or no longer.
@@ -42,25 +42,25 @@ impl State {
         if linked {
             self.set_split(true);
         }
-        if let Some(split) = &mut self.split {
+        if let Some(split) = &mut self.views.split {
             (split.linked, split.followed) = (linked, None);
         }
     }
 
     /// Exchanges the two views, until the other one is drawn.
     pub(crate) fn exchange_views(&mut self) {
-        if let Some(split) = &mut self.split {
+        if let Some(split) = &mut self.views.split {
             std::mem::swap(&mut self.view, &mut split.view);
-            std::mem::swap(&mut self.fitted, &mut split.fitted);
-            std::mem::swap(&mut self.aspect, &mut split.aspect);
+            std::mem::swap(&mut self.views.fitted, &mut split.fitted);
+            std::mem::swap(&mut self.views.aspect, &mut split.aspect);
         }
     }
 
     /// Makes commands be for the right view, or for the left one.
     pub(crate) fn command_view(&mut self, right: bool) {
-        if self.split.is_some_and(|split| split.right != right) {
+        if self.views.split.is_some_and(|split| split.right != right) {
             self.exchange_views();
-            if let Some(split) = &mut self.split {
+            if let Some(split) = &mut self.views.split {
                 (split.right, split.followed) = (right, None);
             }
         }
@@ -68,7 +68,7 @@ impl State {
 
     /// Moves the view that has not been moved as the other one was, if they are linked.
     pub(crate) fn follow(&mut self) {
-        let Some(split) = self.split.filter(|split| split.linked) else {
+        let Some(split) = self.views.split.filter(|split| split.linked) else {
             return;
         };
         let (mut view, mut other) = (self.view, split.view);
@@ -80,9 +80,9 @@ impl State {
             }
         }
         if view != self.view {
-            (self.view, self.fitted) = (view, None);
+            (self.view, self.views.fitted) = (view, None);
         }
-        if let Some(split) = &mut self.split {
+        if let Some(split) = &mut self.views.split {
             if split.view != other {
                 (split.view, split.fitted) = (other, None);
             }
@@ -102,43 +102,46 @@ mod tests {
         let mut state = State::new(Settings::default());
         state.run(Command::SetLinked(true));
         let angle = |state: &State| {
-            let other = state.split.expect("two views").view.camera();
+            let other = state.views.split.expect("two views").view.camera();
             state.view.camera().axes()[2].dot(other.axes()[2])
         };
         state.follow();
         let before = angle(&state);
         assert!(before.abs() < 1e-9, "one is from the side of the other");
-        let first = state.split.expect("two views").view;
+        let first = state.views.split.expect("two views").view;
         state.view = state.view.orbited(0.3, 0.0, DVec3::Y);
         state.follow();
-        let second = state.split.expect("two views").view;
+        let second = state.views.split.expect("two views").view;
         assert!(first != second && (angle(&state) - before).abs() < 1e-9);
         let view = state.view;
-        if let Some(split) = &mut state.split {
+        if let Some(split) = &mut state.views.split {
             split.view = second.orbited(-0.2, 0.0, DVec3::Y);
         }
         state.follow();
         assert!(state.view != view && (angle(&state) - before).abs() < 1e-9);
         // Not linked, each is by itself.
         state.run(Command::SetLinked(false));
-        let other = state.split.expect("two views").view;
+        let other = state.views.split.expect("two views").view;
         state.view = state.view.orbited(0.3, 0.0, DVec3::Y);
         state.follow();
-        assert_eq!(state.split.expect("two views").view, other);
+        assert_eq!(state.views.split.expect("two views").view, other);
     }
 
     #[test]
     fn commands_are_for_the_view_that_was_chosen() {
         let mut state = State::new(Settings::default());
         state.run(Command::SetSplit(true));
-        let (left, right) = (state.view, state.split.expect("two views").view);
+        let (left, right) = (state.view, state.views.split.expect("two views").view);
         state.command_view(true);
-        assert_eq!((state.view, state.split.expect("two").view), (right, left));
+        assert_eq!(
+            (state.view, state.views.split.expect("two").view),
+            (right, left)
+        );
         state.command_view(true);
         assert_eq!(state.view, right);
         state.command_view(false);
         assert_eq!(state.view, left);
         state.run(Command::SetSplit(false));
-        assert_eq!((state.view, state.split), (left, None));
+        assert_eq!((state.view, state.views.split), (left, None));
     }
 }

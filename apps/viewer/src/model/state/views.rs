@@ -6,7 +6,38 @@ use super::{CellPart, Effect, State};
 use crate::model::command::{Command, Edit, Listed, listed};
 use crate::model::document::SavedView;
 use crate::model::sources::extent;
+use crate::model::split::Split;
 use crate::model::view::View;
+
+/// Views beside the current one, and how it came to be.
+#[derive(Clone, Debug)]
+pub struct Views {
+    /// The side from which the view shows everything, until it is moved by hand.
+    pub fitted: Option<Side>,
+    /// The other one of two views side by side.
+    pub split: Option<Split>,
+    /// Views of a film.
+    pub key_views: Vec<View>,
+    /// The view that levels are frozen for.
+    pub frozen: Option<View>,
+    /// Whether the scene turns slowly.
+    pub turning: bool,
+    /// Width by height of the picture.
+    pub aspect: f64,
+}
+
+impl Default for Views {
+    fn default() -> Self {
+        Self {
+            fitted: None,
+            split: None,
+            key_views: Vec::new(),
+            frozen: None,
+            turning: false,
+            aspect: 1.0,
+        }
+    }
+}
 
 impl State {
     /// The view of everything from a side.
@@ -15,17 +46,17 @@ impl State {
         spheres.extend(self.sphere_of_points());
         spheres.extend(self.mesh_points(false));
         self.view
-            .fitted(side, self.document.y_down, self.aspect, &spheres)
+            .fitted(side, self.document.y_down, self.views.aspect, &spheres)
     }
 
     /// Adapts the view to another aspect ratio, so that the same things stay in the picture.
     /// Returns the view if it has changed.
     pub(crate) fn reshape(&mut self, aspect: f64) -> Option<View> {
-        let before = std::mem::replace(&mut self.aspect, aspect);
+        let before = std::mem::replace(&mut self.views.aspect, aspect);
         if before == aspect || self.document.neurons.is_empty() {
             return None;
         }
-        Some(match self.fitted {
+        Some(match self.views.fitted {
             Some(side) => self.fit(side),
             None => self.view.reshaped(before, aspect),
         })
@@ -33,7 +64,7 @@ impl State {
 
     /// Looks at everything, from where the camera is: cells are elsewhere now.
     pub(super) fn show_all(&mut self) {
-        if let Some(side) = self.fitted {
+        if let Some(side) = self.views.fitted {
             self.effects.push(Effect::Go(self.fit(side)));
             return;
         }
@@ -48,7 +79,7 @@ impl State {
     /// Looks at the selection, or at everything if nothing is selected. A soma that was clicked is what is selected
     /// of its cell; a click on a neurite selects the whole cell.
     pub(super) fn focus(&mut self) {
-        let soma = self.picked.filter(|picked| {
+        let soma = self.pointing.picked.filter(|picked| {
             let only = self.document.neurons.selected() == [picked.neuron];
             only && picked.part == CellPart::Soma
         });
@@ -70,18 +101,18 @@ impl State {
         let saved = SavedView::new(self.view, &self.document.saved_views);
         let name = saved.name.clone();
         self.run(Edit::SaveView(saved));
-        self.status = format!("Saved as '{name}' (Look, View)");
+        self.messages.status = format!("Saved as '{name}' (Look, View)");
     }
 
     /// Goes to a saved view.
     pub(super) fn go_to_saved(&mut self, index: usize) {
         match self.document.saved_views.get(index) {
             Some(saved) => {
-                self.status = format!("View '{}'", saved.name);
+                self.messages.status = format!("View '{}'", saved.name);
                 self.effects.push(Effect::Go(saved.view));
-                self.fitted = None;
+                self.views.fitted = None;
             }
-            None => self.status = "No view is saved there: V saves this one".into(),
+            None => self.messages.status = "No view is saved there: V saves this one".into(),
         }
     }
 
@@ -142,7 +173,7 @@ mod tests {
         state.run(Command::GoSaved(1));
         assert_eq!(state.effects.pop(), Some(Effect::Go(there)));
         state.run(Command::GoSaved(7));
-        assert!(state.effects.is_empty() && state.status.contains("No view"));
+        assert!(state.effects.is_empty() && state.messages.status.contains("No view"));
         // A name that was typed is undone at once; then a saved view of the same name comes back.
         state.run(Command::Undo);
         assert_eq!(state.document.saved_views[1].name, "View 2");

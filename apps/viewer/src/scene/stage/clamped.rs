@@ -60,7 +60,7 @@ impl Stage {
             }
         }
         let all = state.document.neurons.clamped().len();
-        state.counters.clamped = [self.clamped.fine.len(), all];
+        state.drawing.counters.clamped = [self.clamped.fine.len(), all];
         Ok(())
     }
 

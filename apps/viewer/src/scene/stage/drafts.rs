@@ -42,7 +42,7 @@ impl Stage {
         let least = look.least_width_of(state.shown()) * pixels_per_point.max(1.0);
         let mut surface = content::surface_look(look, least);
         surface.clip = self.clip(state);
-        let frozen = state.frozen.map(|view| {
+        let frozen = state.views.frozen.map(|view| {
             let camera = view.camera();
             (camera, self.near(state, 1, camera))
         });

@@ -307,18 +307,21 @@ impl Stage {
         }
         self.take_ids(ctx)?;
         self.outline(state);
-        state.counters.bytes = self.bytes();
+        state.drawing.counters.bytes = self.bytes();
         let [triangles, patches, all] = self.pace.counts.unwrap_or_default();
-        (state.counters.triangles, state.counters.patches) = (triangles, [patches, all]);
-        state.counters.rebuilds = self.rebuilds(state);
-        state.counters.frames_ms = self.pace.frames.iter().copied().collect();
-        state.counters.draft = match self.pace.explored {
+        (
+            state.drawing.counters.triangles,
+            state.drawing.counters.patches,
+        ) = (triangles, [patches, all]);
+        state.drawing.counters.rebuilds = self.rebuilds(state);
+        state.drawing.counters.frames_ms = self.pace.frames.iter().copied().collect();
+        state.drawing.counters.draft = match self.pace.explored {
             true => Draft::Budget(self.explorer.budget()),
             false => Draft::Error(self.pace.coarser),
         };
-        state.counters.markers = self.markers.shown();
-        state.counters.lowered = self.lowered();
-        state.counters.static_picture = self.static_figures();
+        state.drawing.counters.markers = self.markers.shown();
+        state.drawing.counters.lowered = self.lowered();
+        state.drawing.counters.static_picture = self.static_figures();
         self.gpu.check()?;
         Ok(self.texture_id())
     }

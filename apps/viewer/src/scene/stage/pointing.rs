@@ -153,9 +153,9 @@ impl Stage {
         };
         let revisions = state.document.neurons.revisions();
         let key = MaskKey {
-            hovered: state.hovered,
-            picked: state.picked,
-            markers: [state.hovered_marker, state.picked_marker],
+            hovered: state.pointing.hovered,
+            picked: state.pointing.picked,
+            markers: [state.pointing.hovered_marker, state.pointing.picked_marker],
             members: revisions.members,
             selection: revisions.selection,
             params: drawn.params,

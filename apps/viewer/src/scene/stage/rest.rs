@@ -244,7 +244,7 @@ impl Stage {
         let Some(drawn) = self.drawn.as_ref().filter(|_| self.pace.counts.is_none()) else {
             return Ok(());
         };
-        let looked_at = state.tab == Tab::Detail && state.panels;
+        let looked_at = state.layout.tab == Tab::Detail && state.layout.panels;
         // In exploration mode, counting would take as long as drawing.
         if !looked_at || self.pace.rest_mode != RestMode::Refined {
             return Ok(());

@@ -46,8 +46,8 @@ impl Viewer {
         };
         if let Some(written) = autosave.offered {
             // Another dialog may have taken its place.
-            if matches!(self.state.dialog, Dialog::Nothing) {
-                self.state.dialog = Dialog::Recover(written);
+            if matches!(self.state.layout.dialog, Dialog::Nothing) {
+                self.state.layout.dialog = Dialog::Recover(written);
                 ctx.request_repaint();
             }
             return;

@@ -37,7 +37,7 @@ impl Viewer {
                 Err(e) => {
                     let why = e.to_string();
                     self.state.problem(one.display().to_string(), why);
-                    self.state.status = "The session was not opened".into();
+                    self.state.messages.status = "The session was not opened".into();
                     return;
                 }
             },
@@ -82,14 +82,14 @@ impl Viewer {
     fn take_session(&mut self, file: &Path, session: &Session) {
         let state = &mut self.state;
         let settings = std::mem::take(&mut state.settings);
-        let (adapter, aspect) = (state.adapter.clone(), state.aspect);
+        let (adapter, aspect) = (state.drawing.adapter.clone(), state.views.aspect);
         let mut changes = state.changes;
         // What is being read belongs to circuits that are closed now.
         self.worker.stop_markers();
         self.worker.stop_mesh();
         self.plots.cancel();
         *state = State::new(settings);
-        (state.adapter, state.aspect) = (adapter, aspect);
+        (state.drawing.adapter, state.views.aspect) = (adapter, aspect);
         state.document.y_down = session.y_down;
         state.document.look = session.look.clone();
         state.document.detail = session.detail;
@@ -98,9 +98,9 @@ impl Viewer {
         state.document.markers = session.markers.clone();
         *state.document.meshes = session.mesh.clone();
         state.playback.pace = session.playback;
-        (state.view, state.fitted) = (session.view, None);
-        state.split = session.split;
-        state.key_views = session.key_view.clone();
+        (state.view, state.views.fitted) = (session.view, None);
+        state.views.split = session.split;
+        state.views.key_views = session.key_view.clone();
         state.document.saved_views = session.saved_view.clone();
         changes.note_saved();
         self.motion.stop();
@@ -120,7 +120,7 @@ impl Viewer {
             .map(|(id, s)| (id, s.file.clone(), s.soma.clone()))
             .collect();
         if stale.is_empty() {
-            self.state.status = "No file has changed".into();
+            self.state.messages.status = "No file has changed".into();
         }
         for (id, file, soma) in stale {
             self.worker.reload(id, file, soma);
@@ -134,7 +134,7 @@ impl Viewer {
         }
         if let [.., report] = &found.reports[..] {
             self.state.run(Edit::SetReport(Some(report.clone())));
-            self.state.status = format!("{} is shown", report.display());
+            self.state.messages.status = format!("{} is shown", report.display());
             for other in &found.reports[..found.reports.len() - 1] {
                 let why = "one report shows at a time: open it alone";
                 self.state.problem(other.display().to_string(), why);
@@ -271,7 +271,8 @@ impl Viewer {
         let beside = !found.reports.is_empty() || with_cells;
         if found.files.is_empty() && beside {
             if self.state.document.neurons.is_empty() && with_cells {
-                self.state.status = "Points and meshes show beside cells: open these, too".into();
+                self.state.messages.status =
+                    "Points and meshes show beside cells: open these, too".into();
             }
             return;
         }
@@ -280,12 +281,12 @@ impl Viewer {
             0 => String::new(),
             n => format!(", {n} failed"),
         };
-        if read == 0 && loading.failed > 0 && matches!(self.state.dialog, Dialog::Nothing) {
+        if read == 0 && loading.failed > 0 && matches!(self.state.layout.dialog, Dialog::Nothing) {
             // Nothing else would say why nothing came.
-            self.state.dialog = Dialog::Problems;
+            self.state.layout.dialog = Dialog::Problems;
         }
         let neurons = self.state.document.neurons.len();
-        self.state.status = format!("{read} read{failed}; {neurons} in the list");
+        self.state.messages.status = format!("{read} read{failed}; {neurons} in the list");
         self.watch();
     }
 

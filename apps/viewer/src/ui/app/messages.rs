@@ -23,7 +23,7 @@ impl Viewer {
             Message::Cache(why) => self.state.problem("cache", why),
             Message::Reloaded(id, source) => match *source {
                 Ok(source) => {
-                    self.state.status = format!("{} was read again", source.name);
+                    self.state.messages.status = format!("{} was read again", source.name);
                     self.state.sources.replace(id, source);
                     self.watch();
                 }
@@ -71,7 +71,7 @@ impl Viewer {
         self.state.sources.set_meshed(id, edit, meshed);
         if let (Some(left), Some(_), Some(source)) = (left, spines, self.state.sources.get(id)) {
             let grown = format!("{name}: {} spines", source.spine_count());
-            self.state.status = match left {
+            self.state.messages.status = match left {
                 0 => grown,
                 left => format!("{grown}, {left} without room on a dendrite"),
             };

@@ -103,7 +103,7 @@ impl Viewer {
         let mut state = State::new(settings.clone());
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || waker.request_repaint());
         let adapter = &stage.gpu().adapter;
-        state.adapter = (adapter.to_string(), adapter.software);
+        state.drawing.adapter = (adapter.to_string(), adapter.software);
         Ok(Self {
             state,
             stage,
@@ -170,7 +170,7 @@ impl Viewer {
             .into_iter()
             .flatten();
         let empty = self.state.document.neurons.is_empty();
-        let opened = self.state.split.is_some() == self.second.is_some();
+        let opened = self.state.views.split.is_some() == self.second.is_some();
         let drawn = empty || opened && stages.all(Stage::is_settled);
         let reads = self.worker.is_busy() || self.plots.is_busy();
         let busy = reads || self.crossing_search.is_busy();
@@ -222,7 +222,7 @@ impl Viewer {
             return;
         }
         self.run(Command::Quit);
-        if matches!(self.state.dialog, Dialog::Unsaved(_)) {
+        if matches!(self.state.layout.dialog, Dialog::Unsaved(_)) {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             ctx.request_repaint();
         }
@@ -230,12 +230,12 @@ impl Viewer {
 
     /// Opens a stage for the second view, or closes it.
     fn split(&mut self) {
-        match (self.state.split, self.second.take()) {
+        match (self.state.views.split, self.second.take()) {
             (Some(_), Some(stage)) => self.second = Some(stage),
             (Some(_), None) => match self.stage.another() {
                 Ok(stage) => self.second = Some(stage),
                 Err(e) => {
-                    self.state.split = None;
+                    self.state.views.split = None;
                     self.state.problem("two views", e.to_string());
                 }
             },
@@ -313,7 +313,7 @@ impl Viewer {
     /// Turns the scene on the turntable, unless it is held by the mouse.
     fn turn(&mut self, ctx: &egui::Context) {
         let (held, time) = ctx.input(|i| (i.pointer.any_down(), i.stable_dt));
-        let turns = self.state.turning && !self.state.document.neurons.is_empty();
+        let turns = self.state.views.turning && !self.state.document.neurons.is_empty();
         if turns && !held && !self.motion.is_flying() {
             self.motion.turn(&mut self.state, f64::from(time));
             ctx.request_repaint();
@@ -333,7 +333,7 @@ impl Viewer {
                     .chain([self.plots.progress(), self.crossing_search.progress()]);
                 for progress in all.flatten() {
                     progress.cancel();
-                    self.state.status = format!("Stopped {}", progress.what);
+                    self.state.messages.status = format!("Stopped {}", progress.what);
                 }
                 self.stop_markers();
             }
@@ -381,7 +381,7 @@ impl Viewer {
 
     /// Passes on to the input which dialog is open, for the next frame.
     fn end_input(&self, ctx: &egui::Context) {
-        let open = (&self.state.dialog).into();
+        let open = (&self.state.layout.dialog).into();
         let waits = ctx.with_plugin(|input: &mut Input| {
             input.set_open(open);
             input.waits()

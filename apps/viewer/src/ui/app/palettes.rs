@@ -24,10 +24,10 @@ impl Viewer {
                 look.background = file.background.unwrap_or(look.background);
                 self.run(Edit::SetLook(Box::new(look)).into());
                 self.state.history.end_joining();
-                self.state.status = format!("Colors of {}", path.display());
+                self.state.messages.status = format!("Colors of {}", path.display());
             }
             Err(why) => {
-                self.state.status = "The palette was not opened".into();
+                self.state.messages.status = "The palette was not opened".into();
                 self.state.problem(path.display().to_string(), why);
             }
         }
@@ -44,9 +44,9 @@ impl Viewer {
         let text = file.text();
         let written = write_whole(path, Existing::Replace, |to| to.write_all(text.as_bytes()));
         match written {
-            Ok(()) => self.state.status = format!("Saved {}", path.display()),
+            Ok(()) => self.state.messages.status = format!("Saved {}", path.display()),
             Err(e) => {
-                self.state.status = "The palette was not saved".into();
+                self.state.messages.status = "The palette was not saved".into();
                 self.state
                     .problem(path.display().to_string(), e.to_string());
             }

@@ -147,7 +147,7 @@ impl Viewer {
 
     /// Asks for the plot of measures, while it shows.
     fn request_measure(&mut self) {
-        let shows = self.state.panels && self.state.tab == Tab::Inspect;
+        let shows = self.state.layout.panels && self.state.layout.tab == Tab::Inspect;
         let Some(key) = self.state.measure_key().filter(|_| shows) else {
             return;
         };

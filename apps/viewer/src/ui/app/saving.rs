@@ -84,7 +84,7 @@ impl Viewer {
 
     fn save_film(&mut self, film: FilmOptions) {
         let state = &self.state;
-        let (keys, now) = (&state.key_views, state.view);
+        let (keys, now) = (&state.views.key_views, state.view);
         let at = Some(state.playback.pace.time);
         let time = film.time.filter(|_| state.playback.facts.is_some());
         let film_frames = film_frames(keys, now, film.frames, time, at);
@@ -114,13 +114,13 @@ impl Viewer {
         let folder = path.parent().unwrap_or(Path::new(""));
         match Session::of(&self.state, folder).write(path) {
             Ok(()) => {
-                self.state.status = format!("Saved {}", path.display());
+                self.state.messages.status = format!("Saved {}", path.display());
                 self.state.session = Some(path.to_path_buf());
                 self.state.changes.note_saved();
                 self.state.settings.remember_files(&[path.to_path_buf()]);
             }
             Err(why) => {
-                self.state.status = "The session was not saved".into();
+                self.state.messages.status = "The session was not saved".into();
                 self.state.problem(path.display().to_string(), why);
             }
         }

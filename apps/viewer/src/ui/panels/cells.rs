@@ -18,7 +18,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     let hidden = state.document.neurons.hidden();
     let rows = state.found();
     ui.horizontal(|ui| {
-        let title = match state.search.is_empty() {
+        let title = match state.layout.search.is_empty() {
             true => count(neurons, "neuron"),
             false => format!(
                 "{} of {}",
@@ -36,14 +36,14 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
             state.requests.push(Edit::ShowAll.into());
         }
     });
-    if neurons > FEW || !state.search.is_empty() {
-        let search = TextEdit::singleline(&mut state.search)
+    if neurons > FEW || !state.layout.search.is_empty() {
+        let search = TextEdit::singleline(&mut state.layout.search)
             .id(Id::unique("filter"))
             .hint_text("Filter by name");
         ui.add(search.desired_width(f32::INFINITY));
     }
     ui.separator();
-    let picked = state.picked.or_else(|| {
+    let picked = state.pointing.picked.or_else(|| {
         let neuron = state.document.selected().next()?;
         Some(Picked {
             neuron,
@@ -66,7 +66,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     let neurons = &state.document.neurons;
     let shows = |p: &Picked| neurons.get(p.neuron).is_some_and(|n| !n.hidden);
     if hovered.as_ref().is_some_and(shows) {
-        state.hovered = hovered;
+        state.pointing.hovered = hovered;
     }
 }
 
@@ -82,7 +82,7 @@ fn list(
 ) {
     let row_height = ui.spacing().interact_size.y;
     let step = row_height + ui.spacing().item_spacing.y;
-    let wanted = state.reveal.map(|picked| picked.neuron);
+    let wanted = state.pointing.reveal.map(|picked| picked.neuron);
     let wanted = rows.iter().position(|&row| Some(row) == wanted);
     ScrollArea::vertical()
         .id_salt("neurons")
@@ -169,7 +169,7 @@ fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &m
         let modifiers = response.ctx.input(|i| i.modifiers);
         let adds = modifiers.shift || modifiers.command;
         state.requests.push(Edit::Select(vec![index], adds).into());
-        state.picked = Some(soma);
+        state.pointing.picked = Some(soma);
     }
     response.context_menu(|ui| menu(state, index, ui));
 }
@@ -199,7 +199,7 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
     let (morphology, facts) = (source.morphology.clone(), source.sections.clone());
     let name = state.document.neurons[neuron].name.clone();
     ui.add(Label::new(RichText::new(name).strong()).truncate());
-    let reveal = state.reveal.take().filter(|p| p.neuron == neuron);
+    let reveal = state.pointing.reveal.take().filter(|p| p.neuron == neuron);
     ScrollArea::vertical()
         .id_salt("tree")
         .auto_shrink(false)
@@ -221,7 +221,7 @@ fn tree_of(state: &mut State, neuron: usize, hovered: &mut Option<Picked>, ui: &
             }
             // While the lines of a neurite unfold, the revealed one moves: the request is repeated.
             if leaf.opening {
-                leaf.state.reveal = reveal;
+                leaf.state.pointing.reveal = reveal;
             }
         });
 }
@@ -242,8 +242,8 @@ impl Leaf<'_> {
             neuron: self.neuron,
             part,
         };
-        let chosen = self.state.picked == Some(picked);
-        let under = self.state.hovered == Some(picked);
+        let chosen = self.state.pointing.picked == Some(picked);
+        let under = self.state.pointing.hovered == Some(picked);
         let text = if under {
             RichText::new(text).underline()
         } else {
@@ -264,7 +264,7 @@ impl Leaf<'_> {
             go_to(self.state, picked);
         }
         if response.clicked() {
-            self.state.picked = Some(picked);
+            self.state.pointing.picked = Some(picked);
             self.state
                 .requests
                 .push(Edit::Select(vec![self.neuron], false).into());
@@ -318,7 +318,7 @@ fn neurite(
         go_to(leaf.state, picked);
     }
     if header.header_response.clicked() {
-        leaf.state.picked = Some(picked);
+        leaf.state.pointing.picked = Some(picked);
     }
 }
 

@@ -46,7 +46,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
             state.requests.push(Edit::SetLook(Box::new(look)).into());
         }
     });
-    let mut frozen = state.frozen.is_some();
+    let mut frozen = state.views.frozen.is_some();
     let says = "Keeps the triangles of this view while you move on, to look at them from elsewhere";
     if ui.checkbox(&mut frozen, "Freeze").tip(says).changed() {
         state.requests.push(Command::SetFrozen(frozen));
@@ -137,7 +137,7 @@ fn log<N: Numeric>(ui: &mut Ui, value: &mut N, range: RangeInclusive<N>, name: &
 }
 
 fn counters(state: &State, ui: &mut Ui) {
-    let c = &state.counters;
+    let c = &state.drawing.counters;
     let mut rows = match c.lowered {
         None => vec![
             ("triangles", grouped(c.triangles)),

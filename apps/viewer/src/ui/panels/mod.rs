@@ -54,12 +54,12 @@ const TRACES: f32 = 230.0;
 /// Shows all panels.
 pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     let ctx = ui.ctx().clone();
-    let before = screen.state.hovered.take();
-    let marker_before = screen.state.hovered_marker.take();
-    screen.state.touched = None;
+    let before = screen.state.pointing.hovered.take();
+    let marker_before = screen.state.pointing.hovered_marker.take();
+    screen.state.pointing.touched = None;
     screen.state.traces.pointed = None;
-    screen.state.pointed_dimension = None;
-    if screen.state.presenting && !screen.state.document.neurons.is_empty() {
+    screen.state.pointing.dimension = None;
+    if screen.state.layout.presenting && !screen.state.document.neurons.is_empty() {
         CentralPanel::no_frame().show(ui, |ui| {
             picture::panes::show(screen, (before, marker_before), ui);
             presentation(ui);
@@ -89,7 +89,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
             });
         });
     }
-    if screen.state.panels && any {
+    if screen.state.layout.panels && any {
         // Also in a narrow window, a third is left for the picture.
         let all = ui.available_width();
         let sized = |panel: Panel, [least, usual]: [f32; 2], share: f32| {
@@ -154,7 +154,7 @@ fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     ui.spacing_mut().slider_width = room;
     ui.horizontal_wrapped(|ui| {
         for (tab, name) in Tab::ALL {
-            let selected = screen.state.tab == tab;
+            let selected = screen.state.layout.tab == tab;
             if ui.selectable_label(selected, name).clicked() {
                 screen.state.requests.push(Command::Show(tab));
             }
@@ -164,7 +164,7 @@ fn side(screen: &mut Screen<'_>, ui: &mut egui::Ui) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
         let state = &mut *screen.state;
-        match state.tab {
+        match state.layout.tab {
             Tab::Inspect => inspect::show(state, ui),
             Tab::Soma => soma::show(state, ui),
             Tab::Look => look::show(state, screen.stage, ui),

@@ -128,7 +128,7 @@ pub(crate) fn with_circuit() -> (Window, tempfile::TempDir) {
         Command::Open(vec![folder.path().to_path_buf()]),
     );
     let count = state(&mut window).document.neurons.len();
-    assert_eq!(count, 9, "{:?}", state(&mut window).problems);
+    assert_eq!(count, 9, "{:?}", state(&mut window).messages.problems);
     (window, folder)
 }
 

@@ -93,7 +93,7 @@ pub(crate) fn settle(window: &mut Window) {
             begun.elapsed() < Duration::from_secs(120),
             "never settles: {}; {:?}",
             viewer(window).stage.unsettled(),
-            viewer(window).state.problems
+            viewer(window).state.messages.problems
         );
         window.step();
         quiet = if viewer(window).is_settled() {

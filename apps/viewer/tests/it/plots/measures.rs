@@ -63,7 +63,7 @@ fn measures_of_selected_cells_are_plotted_and_saved() {
     };
     assert_eq!(bars.len(), ends);
     // It names a folder of this run.
-    state(&mut window).status.clear();
+    state(&mut window).messages.status.clear();
     snapshot(&mut window, "barcode");
     for (measure, _) in Measure::ALL {
         let plot = plot_of(&mut window, measure);

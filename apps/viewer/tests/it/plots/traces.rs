@@ -126,7 +126,7 @@ fn clicked_compartments_are_plotted_and_the_line_is_the_time() {
     let (section, location) = along_the_longest(&cell);
     click_near(&mut window, location, Modifiers::SHIFT);
     let places = places(&mut window);
-    assert_eq!(places.len(), 2, "{:?}", state(&mut window).status);
+    assert_eq!(places.len(), 2, "{:?}", state(&mut window).messages.status);
     assert_eq!(
         (places[0].section, places[1].section),
         (None, Some(section))
@@ -137,7 +137,7 @@ fn clicked_compartments_are_plotted_and_the_line_is_the_time() {
         assert_eq!(expected.len(), 20);
         assert_eq!(values(&mut window, *place), expected);
     }
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     let names = state(&mut window).trace_plot();
     let names: Vec<&str> = names.series.iter().map(|s| s.name.as_str()).collect();
     assert!(names[0].ends_with(", soma"), "{names:?}");
@@ -177,9 +177,9 @@ fn clicked_compartments_are_plotted_and_the_line_is_the_time() {
     click(&mut window, at, Modifiers::NONE);
     assert_eq!(state(&mut window).document.traces.len(), 2);
     assert!(
-        state(&mut window).status.contains("no values"),
+        state(&mut window).messages.status.contains("no values"),
         "{}",
-        state(&mut window).status
+        state(&mut window).messages.status
     );
 }
 
@@ -223,7 +223,7 @@ fn traces_are_saved_and_come_back_with_sessions() {
         &mut window,
         Command::SavePlot(PlotOf::Traces, path("t.svg")),
     );
-    assert_eq!(state(&mut window).problems, []);
+    assert_eq!(state(&mut window).messages.problems, []);
     let table = fs::read_to_string(path("t.csv")).expect("written");
     let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
     assert_eq!((rows.len(), rows[0][0]), (21, "time_ms"));
@@ -277,7 +277,7 @@ fn traces_are_saved_and_come_back_with_sessions() {
     let mut third = crate::common::window();
     third.step();
     run(&mut third, Command::Open(vec![session]));
-    let problems = state(&mut third).problems.clone();
+    let problems = state(&mut third).messages.problems.clone();
     assert!(problems[0].why.contains("cannot be read"), "{problems:?}");
     assert_eq!(self::places(&mut third), places);
     assert!(state(&mut third).trace_plot().is_empty() && viewer(&mut third).fatal.is_none());
@@ -351,7 +351,7 @@ fn a_report_that_ends_early_is_told_and_what_there_is_shows() {
         .expect("read")
         .clone();
     let why = read.problem.clone().expect("a reason");
-    let problems = state(&mut window).problems.clone();
+    let problems = state(&mut window).messages.problems.clone();
     assert!(problems.iter().any(|p| p.why == why), "{problems:?}");
     let read = values(&mut window, places[0]).len();
     assert!((1..20).contains(&read), "{read}");

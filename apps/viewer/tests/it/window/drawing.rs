@@ -169,7 +169,7 @@ fn without_perspective_things_keep_their_size_and_their_names() {
     let soma = soma.morphology.soma().expect("a soma").center.as_dvec3();
     let at = hit_at(&mut window, soma);
     click(&mut window, at, Modifiers::NONE);
-    assert!(state(&mut window).picked.is_some());
+    assert!(state(&mut window).pointing.picked.is_some());
     let height = |view: View| view.camera().height();
     // At once: the window handles them in their order, as one double click.
     let button = |pressed| Event::PointerButton {
@@ -195,10 +195,13 @@ fn without_perspective_things_keep_their_size_and_their_names() {
     // From the other side, behind the eye of before, all is still there.
     run(&mut window, Command::SaveView);
     run(&mut window, Command::Look(Side::Back));
-    state(&mut window).picked = None;
+    state(&mut window).pointing.picked = None;
     let at = hit_at(&mut window, soma);
     click(&mut window, at, Modifiers::NONE);
-    assert!(state(&mut window).picked.is_some(), "seen from behind");
+    assert!(
+        state(&mut window).pointing.picked.is_some(),
+        "seen from behind"
+    );
     window.key_press(Key::Num5);
     window.step();
     settle(&mut window);
@@ -212,7 +215,7 @@ fn without_perspective_things_keep_their_size_and_their_names() {
 fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     let mut window = with_samples(&[Kind::Pyramidal]);
     run(&mut window, Command::Show(Tab::Detail));
-    let one = state(&mut window).counters.patches[1];
+    let one = state(&mut window).drawing.counters.patches[1];
     assert!(one > 0, "counted");
     // Three are too many, one is not.
     viewer(&mut window).stage.limit_patches(Some(2 * one));
@@ -224,9 +227,13 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     state_of.document.grid = true;
     run(&mut window, Command::Home);
     assert!(viewer(&mut window).stage.is_sharp(), "no draft");
-    let Some(Lowered::Triangles(Some([drawn, needed]))) = state(&mut window).counters.lowered
+    let Some(Lowered::Triangles(Some([drawn, needed]))) =
+        state(&mut window).drawing.counters.lowered
     else {
-        panic!("explored: {:?}", state(&mut window).counters.lowered);
+        panic!(
+            "explored: {:?}",
+            state(&mut window).drawing.counters.lowered
+        );
     };
     assert!(drawn > 0 && drawn <= needed);
     window.get_by_label_contains("reduced: ");
@@ -239,7 +246,7 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     ] {
         detail.at_rest = at_rest;
         run(&mut window, Edit::SetDetail(detail));
-        let lowered = state(&mut window).counters.lowered;
+        let lowered = state(&mut window).drawing.counters.lowered;
         assert_eq!(
             matches!(lowered, Some(Lowered::Triangles(_))),
             budget,
@@ -258,7 +265,7 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     look.wireframe = true;
     run(&mut window, Edit::SetLook(Box::new(look.clone())));
     assert!(matches!(
-        state(&mut window).counters.lowered,
+        state(&mut window).drawing.counters.lowered,
         Some(Lowered::Error(_))
     ));
     look.wireframe = false;
@@ -266,7 +273,7 @@ fn what_is_too_expensive_is_explored_says_so_and_comes_back() {
     // Alone, it is whole again, and the window no longer says so.
     run(&mut window, Edit::Select(vec![1], false));
     run(&mut window, Edit::Isolate);
-    assert_eq!(state(&mut window).counters.lowered, None);
+    assert_eq!(state(&mut window).drawing.counters.lowered, None);
     assert!(window.query_by_label_contains("reduced: ").is_none());
     assert!(
         seen_parts(&mut window)
@@ -288,20 +295,29 @@ fn tracings_that_do_not_fit_the_memory_are_there_where_they_show() {
         run(&mut window, Edit::Select(vec![2], false));
         run(&mut window, Edit::Isolate);
         rest(&mut window);
-        let alone = (drawn(&mut window), state(&mut window).counters.lowered);
+        let alone = (
+            drawn(&mut window),
+            state(&mut window).drawing.counters.lowered,
+        );
         run(&mut window, Edit::ShowAll);
         state(&mut window).document.grid = true;
         run(&mut window, Command::Home);
         rest(&mut window);
-        let row = (drawn(&mut window), state(&mut window).counters.lowered);
+        let row = (
+            drawn(&mut window),
+            state(&mut window).drawing.counters.lowered,
+        );
         run(&mut window, Edit::Select(vec![0], false));
         run(&mut window, Edit::Isolate);
         rest(&mut window);
-        let first = (drawn(&mut window), state(&mut window).counters.lowered);
+        let first = (
+            drawn(&mut window),
+            state(&mut window).drawing.counters.lowered,
+        );
         let points = state(&mut window).sources.iter();
         let points = points.map(|(_, source)| source.generated.mesh.tracing.len() as u64);
         let points = points.max().expect("opened");
-        let bytes = state(&mut window).counters.bytes[0];
+        let bytes = state(&mut window).drawing.counters.bytes[0];
         ([alone, row, first], bytes, points)
     };
     let (whole, bytes, points) = opened(None);

@@ -40,9 +40,9 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
     window.step();
     window.step();
     settle(&mut window);
-    let part = state(&mut window).hovered.expect("touched").part;
+    let part = state(&mut window).pointing.hovered.expect("touched").part;
     assert_eq!(part, CellPart::Neurite(0));
-    assert!(state(&mut window).touched.is_some());
+    assert!(state(&mut window).pointing.touched.is_some());
     assert!(
         state(&mut window).document.somata.is_empty(),
         "only touched"
@@ -60,7 +60,10 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
         window.step();
         settle(&mut window);
     }
-    assert!(state(&mut window).touched.is_some(), "while it is dragged");
+    assert!(
+        state(&mut window).pointing.touched.is_some(),
+        "while it is dragged"
+    );
     snapshot(&mut window, "ring");
     window.event(Event::PointerButton {
         pos: rail.min + Vec2::new(0.85 * rail.width(), rail.height() / 2.0),
@@ -80,7 +83,7 @@ fn a_ring_follows_its_slider_and_is_shown_while_it_is_touched() {
     assert_eq!(source(&mut window), (after, larger));
     window.event(Event::PointerMoved(Pos2::new(600.0, 730.0)));
     window.step();
-    assert!(state(&mut window).touched.is_none());
+    assert!(state(&mut window).pointing.touched.is_none());
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
@@ -140,7 +143,7 @@ fn every_edit_can_be_undone_and_done_again() {
     run(&mut window, Edit::Remove);
     run(&mut window, Edit::ShowAll);
     assert_eq!(state(&mut window).document.neurons.len(), 1);
-    assert!(viewer(&mut window).fatal.is_none() && state(&mut window).problems.is_empty());
+    assert!(viewer(&mut window).fatal.is_none() && state(&mut window).messages.problems.is_empty());
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
@@ -258,12 +261,19 @@ fn a_session_comes_back_as_it_was() {
     run(&mut other, Command::Open(vec![file.clone()]));
     assert_eq!(state(&mut other).document, document);
     assert_eq!(
-        (state(&mut other).view, state(&mut other).key_views.len()),
+        (
+            state(&mut other).view,
+            state(&mut other).views.key_views.len()
+        ),
         (view, 1)
     );
     // A broken one loses nothing.
     fs::write(&file, "version = 1\nview = 3\n").expect("written");
     run(&mut other, Command::Open(vec![file]));
     assert_eq!(state(&mut other).document, document);
-    assert!(state(&mut other).problems[0].why.contains("line 2"));
+    assert!(
+        state(&mut other).messages.problems[0]
+            .why
+            .contains("line 2")
+    );
 }

@@ -29,13 +29,13 @@ fn failures_are_listed_while_the_rest_shows() {
     );
     let folder = fs::canonicalize(folder.path()).expect("there");
     assert_eq!(state(&mut window).settings.recent, [folder]);
-    assert!(matches!(state(&mut window).dialog, Dialog::Nothing));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Nothing));
     assert_eq!(state(&mut window).document.neurons.len(), 1);
     assert_eq!(
-        state(&mut window).problems.len(),
+        state(&mut window).messages.problems.len(),
         2,
         "{:?}",
-        state(&mut window).problems
+        state(&mut window).messages.problems
     );
     run(&mut window, Command::ToggleProblems);
     window.get_by_label("What went wrong");
@@ -49,7 +49,7 @@ fn it_is_said_at_once_why_nothing_was_read() {
     let bad = folder.path().join("bad.swc");
     fs::write(&bad, "no tracing\n").expect("written");
     run(&mut window, Command::Open(vec![bad]));
-    assert!(matches!(state(&mut window).dialog, Dialog::Problems));
+    assert!(matches!(state(&mut window).layout.dialog, Dialog::Problems));
     assert!(state(&mut window).settings.recent.is_empty());
 }
 
@@ -114,10 +114,12 @@ fn meshes_and_pictures_are_saved() {
         replace: false,
     };
     run(&mut window, Command::SavePicture(picture.clone()));
-    assert!(is_png(&at("p.png")) && state(&mut window).problems.is_empty());
+    assert!(is_png(&at("p.png")) && state(&mut window).messages.problems.is_empty());
     run(&mut window, Command::SavePicture(picture));
     assert!(
-        state(&mut window).problems[0].why.contains("exists"),
+        state(&mut window).messages.problems[0]
+            .why
+            .contains("exists"),
         "nothing is replaced unasked"
     );
 }

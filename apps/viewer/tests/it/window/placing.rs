@@ -104,7 +104,12 @@ fn a_lasso_goes_around_what_lies_between() {
     let selected = state(&mut window).document.neurons.selected().to_vec();
     assert_eq!(selected, [1, 2], "a rectangle would have the first, too");
     assert_eq!(state(&mut window).view, view, "the camera stays");
-    assert!(state(&mut window).status.contains("2 neurons in the lasso"));
+    assert!(
+        state(&mut window)
+            .messages
+            .status
+            .contains("2 neurons in the lasso")
+    );
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
@@ -269,7 +274,7 @@ fn a_presentation_turns_the_scene_without_panels_until_escape() {
     window.key_press(Key::Escape);
     window.step();
     settle(&mut window);
-    assert!(!state(&mut window).presenting);
+    assert!(!state(&mut window).layout.presenting);
     assert_eq!(crate::common::picture(&window), small);
     // Escape has ended the presentation, and not the selection.
     assert_eq!(state(&mut window).document.neurons.selected(), [0]);

@@ -36,6 +36,7 @@ fn a_cell_is_drawn_picked_and_inspected() {
     window.event(Event::PointerMoved(at));
     window.run_steps(4);
     let hovered = state(&mut window)
+        .pointing
         .hovered
         .expect("something under the cursor");
     assert_eq!((hovered.neuron, hovered.part), (0, CellPart::Soma));

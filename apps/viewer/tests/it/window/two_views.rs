@@ -23,7 +23,7 @@ fn pictures(window: &Window) -> Vec<Rect> {
 /// The left view and the right one.
 fn views(window: &mut Window) -> [View; 2] {
     let state = state(window);
-    let split = state.split.expect("two views");
+    let split = state.views.split.expect("two views");
     match split.right {
         true => [split.view, state.view],
         false => [state.view, split.view],
@@ -72,7 +72,10 @@ fn each_view_moves_by_itself_and_linked_ones_together() {
     drag(&mut window, right.center(), Vec2::new(60.0, 10.0));
     let after = views(&mut window);
     assert!(before[0] == after[0] && before[1] != after[1]);
-    assert!(state(&mut window).split.expect("two").right, "clicked last");
+    assert!(
+        state(&mut window).views.split.expect("two").right,
+        "clicked last"
+    );
     // A click selects in either.
     let soma = state(&mut window).middle_of(0).expect("a soma");
     let size = [right.width(), right.height()].map(|n| n.round() as u32);
@@ -93,7 +96,7 @@ fn each_view_moves_by_itself_and_linked_ones_together() {
     assert!(before[0] != after[0] && before[1] != after[1]);
     assert!((angle(before) - angle(after)).abs() < 1e-6);
     // Keys are for the one that was clicked last.
-    assert!(!state(&mut window).split.expect("two").right);
+    assert!(!state(&mut window).views.split.expect("two").right);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mine.neurotess");
     run(&mut window, Command::SaveSession(file.clone()));
@@ -105,6 +108,6 @@ fn each_view_moves_by_itself_and_linked_ones_together() {
     other.step();
     run(&mut other, Command::Open(vec![file]));
     assert_eq!(views(&mut other), kept);
-    assert!(state(&mut other).split.expect("two").linked);
-    assert!(viewer(&mut other).fatal.is_none() && state(&mut other).problems.is_empty());
+    assert!(state(&mut other).views.split.expect("two").linked);
+    assert!(viewer(&mut other).fatal.is_none() && state(&mut other).messages.problems.is_empty());
 }

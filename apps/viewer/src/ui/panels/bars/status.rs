@@ -36,7 +36,7 @@ pub(crate) fn show(
             }
         }
         lowered(state, ui);
-        ui.add(egui::Label::new(RichText::new(&state.status).weak()).truncate());
+        ui.add(egui::Label::new(RichText::new(&state.messages.status).weak()).truncate());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             right(state, drawing, ui);
         });
@@ -52,9 +52,9 @@ fn problems(state: &mut State, ui: &mut Ui) {
             state.requests.push(Command::Reload);
         }
     }
-    let wrong = state.problems.len();
+    let wrong = state.messages.problems.len();
     if wrong > 0 {
-        let last = &state.problems[wrong - 1];
+        let last = &state.messages.problems[wrong - 1];
         let says = format!("{}: {}", last.what, last.why);
         let text = RichText::new(count(wrong, "problem"));
         let response = ui
@@ -75,7 +75,7 @@ const THINNED: &str = "More synapses or points are in view than pixels, or a fra
 /// Says where quality is reduced, and why.
 fn lowered(state: &State, ui: &mut Ui) {
     let warn = ui.visuals().warn_fg_color;
-    if state.frozen.is_some() {
+    if state.views.frozen.is_some() {
         ui.colored_label(warn, "detail frozen")
             .on_hover_text("The triangles are those of another view (Ctrl F)");
     }
@@ -87,7 +87,7 @@ fn lowered(state: &State, ui: &mut Ui) {
         let text = format!("hidden below {:.1} px", state.document.detail.smallest);
         ui.colored_label(warn, text).on_hover_text("Set in Detail");
     }
-    if let Some(lowered) = state.counters.lowered {
+    if let Some(lowered) = state.drawing.counters.lowered {
         let text = match lowered {
             Lowered::Triangles(Some([drawn, wanted])) if drawn < wanted => {
                 format!(
@@ -101,7 +101,7 @@ fn lowered(state: &State, ui: &mut Ui) {
         };
         ui.colored_label(warn, text).on_hover_text(LOWERED);
     }
-    if let Some([drawn, in_view, _]) = state.counters.markers
+    if let Some([drawn, in_view, _]) = state.drawing.counters.markers
         && drawn < in_view
     {
         let [drawn, in_view] = [drawn, in_view].map(|n| grouped(n as u64));
@@ -115,7 +115,7 @@ fn lowered(state: &State, ui: &mut Ui) {
 }
 
 fn right(state: &State, drawing: Option<f32>, ui: &mut Ui) {
-    let (adapter, software) = &state.adapter;
+    let (adapter, software) = &state.drawing.adapter;
     if *software {
         ui.weak("software graphics").on_hover_text(format!(
             "Drawn by the processor ({adapter}). A graphics card is far faster."
@@ -131,7 +131,7 @@ fn right(state: &State, drawing: Option<f32>, ui: &mut Ui) {
     if selected > 0 {
         ui.label(format!("{selected} selected"));
     }
-    if let Some(hovered) = state.hovered
+    if let Some(hovered) = state.pointing.hovered
         && let Some(neuron) = state.document.neurons.get(hovered.neuron)
     {
         ui.label(describe(state, hovered, &neuron.name));

@@ -12,7 +12,7 @@ use crate::ui::file_panel::FilePanel;
 use crate::ui::panels::{keys_text, window};
 
 pub(crate) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Context) {
-    let dialog = std::mem::take(&mut state.dialog);
+    let dialog = std::mem::take(&mut state.layout.dialog);
     // Behind the question whether a file may be replaced, the file dialog waits.
     let keeps = |dialog: &Dialog| matches!(dialog, Dialog::Files(_) | Dialog::Replace(..));
     if !keeps(&dialog) {
@@ -30,12 +30,12 @@ pub(crate) fn show(state: &mut State, panel: &mut Option<FilePanel>, ctx: &Conte
         Dialog::Recover(written) => leaving::recover(state, written, ctx),
     };
     let had = !matches!(stays, Dialog::Nothing);
-    state.dialog = match (escape, stays) {
+    state.layout.dialog = match (escape, stays) {
         (false, stays) => stays,
         (true, Dialog::Replace(..)) => back(panel),
         (true, _) => Dialog::Nothing,
     };
-    if !keeps(&state.dialog) {
+    if !keeps(&state.layout.dialog) {
         *panel = None;
     }
     if escape && had {
@@ -169,12 +169,12 @@ fn problems(state: &mut State, ctx: &Context) -> Dialog {
         .open(&mut open)
         .default_width(560.0)
         .show(ctx, |ui| {
-            if state.problems.is_empty() {
+            if state.messages.problems.is_empty() {
                 ui.weak("Nothing.");
                 return;
             }
             ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
-                for problem in &state.problems {
+                for problem in &state.messages.problems {
                     ui.label(RichText::new(&problem.what).strong());
                     ui.label(&problem.why);
                     ui.add_space(4.0);
@@ -184,13 +184,14 @@ fn problems(state: &mut State, ctx: &Context) -> Dialog {
             ui.horizontal(|ui| {
                 if ui.button("Copy").clicked() {
                     let lines = state
+                        .messages
                         .problems
                         .iter()
                         .map(|p| format!("{}: {}\n", p.what, p.why));
                     ui.ctx().copy_text(lines.collect());
                 }
                 if ui.button("Clear the list").clicked() {
-                    state.problems.clear();
+                    state.messages.problems.clear();
                 }
             });
         });

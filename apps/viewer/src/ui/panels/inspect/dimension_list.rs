@@ -11,7 +11,7 @@ use crate::ui::panels::{heading, measured};
 
 /// Shows the list, if there is something in it or measuring is on.
 pub(crate) fn show(state: &mut State, ui: &mut Ui) {
-    let on = state.measuring.is_some();
+    let on = state.tools.measuring.is_some();
     if !on && state.document.dimensions.is_empty() {
         return;
     }
@@ -75,7 +75,7 @@ fn row(
         ui.add(Label::new(details.weak()).wrap());
     });
     if shown.response.contains_pointer() {
-        state.pointed_dimension = Some(index);
+        state.pointing.dimension = Some(index);
     }
 }
 

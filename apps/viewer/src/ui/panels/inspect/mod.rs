@@ -79,7 +79,7 @@ fn buttons(state: &mut State, ui: &mut egui::Ui) {
 
 /// The part of the cell that was clicked.
 fn part(state: &State, neuron: usize, ui: &mut egui::Ui) {
-    let Some(picked) = state.picked.filter(|p| p.neuron == neuron) else {
+    let Some(picked) = state.pointing.picked.filter(|p| p.neuron == neuron) else {
         return;
     };
     let Some(source) = state.source_of(neuron) else {

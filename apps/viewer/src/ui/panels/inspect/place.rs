@@ -46,7 +46,7 @@ pub(crate) fn show(state: &mut State, ui: &mut Ui) {
         state.requests.push(Command::EndPlacing);
     }
     ui.horizontal_wrapped(|ui| {
-        let placing = state.placing.is_some();
+        let placing = state.tools.placing.is_some();
         let tip = "Arrows and rings in the picture (P)";
         if ui.selectable_label(placing, "Handles").tip(tip).clicked() {
             state.requests.push(Command::SetPlacing(!placing));

@@ -42,7 +42,7 @@ pub(crate) fn show(state: &mut State, look: Option<&mut Look>, released: bool, u
         })
         .tip("Diameter; from afar they are at least 3 pixels wide");
     }
-    if let Some([drawn, in_view, all]) = state.counters.markers {
+    if let Some([drawn, in_view, all]) = state.drawing.counters.markers {
         let [drawn, in_view, all] = [drawn, in_view, all].map(|n| grouped(n as u64));
         let text = match drawn == in_view {
             true => format!("{drawn} of {all} in view"),
@@ -192,7 +192,7 @@ fn colored_by(id: &str, none: &str, names: &[String], chosen: &mut Option<String
 
 /// The synapse or point that was clicked, in *Inspect*.
 pub(crate) fn picked(state: &mut State, ui: &mut Ui) {
-    let Some(marker) = state.picked_marker else {
+    let Some(marker) = state.pointing.picked_marker else {
         return;
     };
     let Some(facts) = state.marker_facts(marker) else {

@@ -49,7 +49,7 @@ pub(crate) fn drag(state: &mut State, response: &Response, ui: &Ui) -> bool {
         ui.data_mut(|data| data.remove_temp::<Vec<Pos2>>(id));
         let inside = neurons(state, &area, response.rect);
         let found = crate::ui::panels::cells::count(inside.len(), "neuron");
-        state.status = format!("{found} in the {}", area.name());
+        state.messages.status = format!("{found} in the {}", area.name());
         state
             .requests
             .push(Edit::Select(inside, modifiers.shift).into());

@@ -23,9 +23,11 @@ pub(crate) fn show(state: &State, rect: Rect, ui: &Ui) {
         let rests = pointer.time_since_last_movement();
         (pointer.hover_pos(), rests, pointer.any_down())
     });
-    let (Some(at), Some(hovered), false) =
-        (at.filter(|at| rect.contains(*at)), state.hovered, down)
-    else {
+    let (Some(at), Some(hovered), false) = (
+        at.filter(|at| rect.contains(*at)),
+        state.pointing.hovered,
+        down,
+    ) else {
         return;
     };
     if rests < REST {

@@ -17,7 +17,7 @@ const RIM: f32 = 1.4;
 /// one is highlighted, and so is the one whose line in the list is under the cursor.
 pub(crate) fn show(state: &State, going: Option<Figure>, rect: Rect, painter: &Painter) {
     let kept = state.shown_figures().into_iter();
-    let kept = kept.map(|(index, figure)| (state.pointed_dimension == Some(index), figure));
+    let kept = kept.map(|(index, figure)| (state.pointing.dimension == Some(index), figure));
     let figures: Vec<(bool, Figure)> = kept.chain(going.map(|figure| (true, figure))).collect();
     if figures.is_empty() {
         return;

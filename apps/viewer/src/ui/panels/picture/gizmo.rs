@@ -33,7 +33,7 @@ const LIT: Color32 = Color32::from_rgb(255, 200, 60);
 /// Handles a drag of a handle. True while there is one: it does not move the camera.
 pub(crate) fn drag(state: &mut State, response: &Response, ui: &Ui) -> bool {
     let Some(shape) = Gizmo::of(state, response.rect) else {
-        if let Some(placing) = &mut state.placing {
+        if let Some(placing) = &mut state.tools.placing {
             (placing.under, placing.drag) = (None, None);
         }
         return false;
@@ -54,7 +54,7 @@ pub(crate) fn drag(state: &mut State, response: &Response, ui: &Ui) -> bool {
         let size = [response.rect.width(), response.rect.height()].map(f64::from);
         state.begin_placing(handle, from(at), size);
     }
-    let Some(placing) = &mut state.placing else {
+    let Some(placing) = &mut state.tools.placing else {
         return false;
     };
     placing.under = under;
@@ -74,7 +74,7 @@ pub(crate) fn drag(state: &mut State, response: &Response, ui: &Ui) -> bool {
         Some((places, says)) => {
             ui.set_cursor_icon(CursorIcon::Grabbing);
             state.requests.push(Edit::Place(places).into());
-            state.status = says;
+            state.messages.status = says;
         }
         None => state.requests.push(Edit::Place(drag.before).into()),
     }
@@ -90,7 +90,7 @@ pub(crate) fn show(state: &State, rect: Rect, painter: &Painter) {
     let Some(shape) = Gizmo::of(state, rect) else {
         return;
     };
-    let placing = state.placing.as_ref();
+    let placing = state.tools.placing.as_ref();
     let dragged = placing.and_then(|p| p.drag.as_ref()).map(|d| d.handle);
     let lit = dragged.or(placing.and_then(|p| p.under));
     let color = |handle: Handle, usual: Color32| if lit == Some(handle) { LIT } else { usual };
@@ -137,7 +137,7 @@ impl Gizmo {
     /// None if there are none.
     fn of(state: &State, rect: Rect) -> Option<Self> {
         // While a ring is dragged, the middle of several somata goes around it.
-        let drag = state.placing.as_ref()?.drag.as_ref();
+        let drag = state.tools.placing.as_ref()?.drag.as_ref();
         let turned = drag.filter(|drag| matches!(drag.handle, Handle::Turn(_)));
         let pivot = match turned {
             Some(drag) => drag.pivot,

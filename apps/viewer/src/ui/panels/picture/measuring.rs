@@ -24,7 +24,7 @@ pub(crate) fn point(state: &mut State, seen: Option<CursorHit>, response: &Respo
         let (ray, pixel) = ray_at(state, &seen, at, response.rect);
         pointed(state, &seen, ray, NEAR * pixel)
     });
-    if let Some(tool) = &mut state.measuring {
+    if let Some(tool) = &mut state.tools.measuring {
         tool.under = under;
     }
     if response.hovered() {
@@ -67,11 +67,11 @@ fn ray_at(state: &State, seen: &CursorHit, at: Pos2, rect: Rect) -> (Ray, f64) {
 /// Handles a click: the first one begins a distance, the second one keeps it. Two at the same place
 /// keep the diameter there, or the angle of a fork.
 pub(crate) fn click(state: &mut State, rect: Rect) {
-    let Some(Measuring { first, under }) = state.measuring else {
+    let Some(Measuring { first, under }) = state.tools.measuring else {
         return;
     };
     let Some(under) = under else {
-        state.status = "Measuring: click a neuron".into();
+        state.messages.status = "Measuring: click a neuron".into();
         return;
     };
     match first {
@@ -111,7 +111,7 @@ fn place(state: &State, anchor: Anchor, rect: Rect) -> Option<Pos2> {
 /// Draws the dimensions and what is being measured, and says how to go on.
 pub(crate) fn show(state: &State, rect: Rect, ui: &Ui) {
     let painter = ui.painter().with_clip_rect(rect);
-    let Some(tool) = state.measuring else {
+    let Some(tool) = state.tools.measuring else {
         dimensions::show(state, None, rect, &painter);
         return;
     };

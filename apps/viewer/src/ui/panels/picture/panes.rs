@@ -12,7 +12,7 @@ const GAP: f32 = 3.0;
 pub(crate) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
     let rect = ui.available_rect_before_wrap();
     screen.motion.note_window(ui.ctx().content_rect().size());
-    if screen.state.split.is_none() || screen.second.is_none() {
+    if screen.state.views.split.is_none() || screen.second.is_none() {
         viewport::show(screen, before, Pane::Only, rect, ui);
         return;
     }
@@ -22,9 +22,9 @@ pub(crate) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
     let right = Rect::from_min_max(Pos2::new(middle + GAP / 2.0, rect.top()), rect.max);
     pane(screen, before, false, left, ui);
     // The figures of the panels are those of the left one.
-    let counters = screen.state.counters.clone();
+    let counters = screen.state.drawing.counters.clone();
     pane(screen, before, true, right, ui);
-    screen.state.counters = counters;
+    screen.state.drawing.counters = counters;
     screen.state.follow();
     let pressed = ui.input(|i| {
         let at = i.pointer.press_origin();
@@ -34,6 +34,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
         let is_right = right.contains(at);
         if screen
             .state
+            .views
             .split
             .is_some_and(|split| split.right != is_right)
         {
@@ -46,7 +47,11 @@ pub(crate) fn show(screen: &mut Screen<'_>, before: Before, ui: &mut Ui) {
 
 /// Shows one of the two.
 fn pane(screen: &mut Screen<'_>, before: Before, right: bool, rect: Rect, ui: &mut Ui) {
-    let commanded = screen.state.split.is_some_and(|split| split.right == right);
+    let commanded = screen
+        .state
+        .views
+        .split
+        .is_some_and(|split| split.right == right);
     if right {
         exchange_stages(screen);
     }

@@ -83,7 +83,7 @@ pub(crate) fn show(screen: &mut Screen<'_>, before: Before, pane: Pane, rect: Re
         point(screen, before, &response, points);
     }
     // Keys are for a dialog that is open, even while none of its lines has the keyboard.
-    let asked = Open::from(&screen.state.dialog).is_modal();
+    let asked = Open::from(&screen.state.layout.dialog).is_modal();
     if pane.is_commanded() && !asked && !ui.ctx().egui_wants_keyboard_input() {
         fly(screen, upwards(screen.state), ui);
     }
@@ -231,7 +231,7 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
             (picked, seen.and_then(|s| s.marker()))
         };
         let state = &mut *screen.state;
-        (state.hovered, state.hovered_marker) = match screen.stage.can_pick() {
+        (state.pointing.hovered, state.pointing.hovered_marker) = match screen.stage.can_pick() {
             true => now(),
             false => before,
         };
@@ -246,7 +246,7 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
         _ => None,
     };
     screen.state.traces.pointed = place;
-    if screen.state.measuring.is_some() {
+    if screen.state.tools.measuring.is_some() {
         measuring::point(screen.state, seen, response);
         if response.clicked() {
             measuring::click(screen.state, response.rect);
@@ -277,16 +277,16 @@ fn point(screen: &mut Screen<'_>, before: Before, response: &Response, points: f
 
 /// Tells what a synapse or point is. The selection stays, since it decides which synapses show.
 fn click_marker(state: &mut State, marker: MarkerRef) {
-    (state.picked, state.picked_marker) = (None, Some(marker));
+    (state.pointing.picked, state.pointing.picked_marker) = (None, Some(marker));
     if let Some(facts) = state.marker_facts(marker) {
         let rows = facts
             .rows
             .iter()
             .map(|(name, value)| format!("{name} {value}"));
         let rows: Vec<String> = rows.collect();
-        state.status = format!("{}: {}", facts.title, rows.join(", "));
+        state.messages.status = format!("{}: {}", facts.title, rows.join(", "));
     }
-    if state.tab != Tab::Inspect {
+    if state.layout.tab != Tab::Inspect {
         state.requests.push(Command::Show(Tab::Inspect));
     }
 }
@@ -296,7 +296,7 @@ fn has_values(screen: &mut Screen<'_>, neuron: usize) -> bool {
     let recording = screen.stage.recording_of(&screen.state.document);
     let has = recording.is_some_and(|recording| recording.has_values_of(neuron));
     if let (false, Some(of)) = (has, screen.state.document.neurons.get(neuron)) {
-        screen.state.status = format!("The report has no values of {}", of.name);
+        screen.state.messages.status = format!("The report has no values of {}", of.name);
     }
     has
 }
@@ -311,11 +311,11 @@ fn click(
     let adds = response
         .ctx
         .input(|i| i.modifiers.shift || i.modifiers.command);
-    state.picked_marker = None;
+    state.pointing.picked_marker = None;
     match picked {
         Some(picked) => {
-            state.picked = Some(picked);
-            state.reveal = Some(picked);
+            state.pointing.picked = Some(picked);
+            state.pointing.reveal = Some(picked);
             if let Some(place) = place {
                 let place = state.middle_of_compartment(place);
                 state.requests.push(Edit::Plot(place, adds).into());
@@ -335,7 +335,7 @@ fn click(
             }
         }
         None if !adds => {
-            state.picked = None;
+            state.pointing.picked = None;
             state.requests.push(Edit::SelectNone.into());
         }
         None => {}
@@ -343,13 +343,13 @@ fn click(
 }
 
 fn menu(state: &mut State, ui: &mut Ui) {
-    let measures = state.measuring.is_some();
+    let measures = state.tools.measuring.is_some();
     let measure = if measures {
         "Stop measuring"
     } else {
         "Measure"
     };
-    let places = state.placing.is_some();
+    let places = state.tools.placing.is_some();
     let place = if places {
         "Stop moving and turning"
     } else {
@@ -409,7 +409,7 @@ fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
     traces::marks(screen.state, rect, &painter);
     gizmo::show(screen.state, rect, &painter);
     measuring::show(screen.state, rect, ui);
-    if screen.state.measuring.is_none() {
+    if screen.state.tools.measuring.is_none() {
         cell_tip::show(screen.state, rect, ui);
     }
     if !screen.stage.can_pick() {

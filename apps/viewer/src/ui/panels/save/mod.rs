@@ -42,7 +42,7 @@ pub(super) fn show(state: &mut State, ui: &mut Ui) {
 fn save(state: &mut State, command: Command) {
     let asks = state.request(command);
     if !matches!(asks, Dialog::Nothing) {
-        state.dialog = asks;
+        state.layout.dialog = asks;
     }
 }
 
@@ -117,10 +117,10 @@ fn film_time(state: &mut State, ui: &mut Ui) {
 
 fn film(state: &mut State, ui: &mut Ui) {
     heading(ui, "Film");
-    if state.key_views.is_empty() {
+    if state.views.key_views.is_empty() {
         ui.weak("Keep two or more views (K): the camera moves from one to the next.");
     }
-    for (index, view) in state.key_views.clone().into_iter().enumerate() {
+    for (index, view) in state.views.key_views.clone().into_iter().enumerate() {
         ui.horizontal(|ui| {
             if ui
                 .button(format!("View {}", index + 1))
@@ -137,7 +137,7 @@ fn film(state: &mut State, ui: &mut Ui) {
     if ui.button("Keep this view").clicked() {
         state.requests.push(Command::AddKeyView);
     }
-    let keys = state.key_views.len();
+    let keys = state.views.key_views.len();
     film_time(state, ui);
     let over_time = state.save.over_time && state.playback.facts.is_some();
     if keys < 2 && !over_time {

@@ -135,14 +135,14 @@ fn row(state: &mut State, id: SourceId, row: &Row, ui: &mut Ui) {
 
 /// Shows the neurite in the picture as if it were under the cursor, and its ring.
 fn touch(state: &mut State, id: SourceId, neurite: u32) {
-    state.touched = Some((id, neurite));
+    state.pointing.touched = Some((id, neurite));
     let neurons = &state.document.neurons;
     let shows = |selected: bool| {
         neurons
             .iter()
             .position(|n| n.source == id && !n.hidden && (n.selected || !selected))
     };
-    state.hovered = shows(true).or_else(|| shows(false)).map(|neuron| Picked {
+    state.pointing.hovered = shows(true).or_else(|| shows(false)).map(|neuron| Picked {
         neuron,
         part: CellPart::Neurite(neurite),
     });

@@ -61,7 +61,7 @@ fn hovered_color() -> Color32 {
 
 /// Draws the rings of the neurite whose slider is touched.
 pub(crate) fn rings(state: &State, rect: Rect, painter: &Painter) {
-    let Some((id, neurite)) = state.touched else {
+    let Some((id, neurite)) = state.pointing.touched else {
         return;
     };
     let Some(source) = state.sources.get(id) else {
@@ -114,7 +114,7 @@ fn round(projection: &Projection<'_>, center: DVec3, [a, b]: [DVec3; 2], painter
 
 /// Lines beside the part under the cursor, for drafts.
 pub(crate) fn hovered(state: &State, rect: Rect, painter: &Painter) {
-    let Some(Picked { neuron, part }) = state.hovered else {
+    let Some(Picked { neuron, part }) = state.pointing.hovered else {
         return;
     };
     let shows = state
