@@ -299,8 +299,8 @@ impl std::fmt::Display for SurfaceWarning {
             }
             Self::ThinTriangles { angle } => write!(
                 f,
-                "one in a hundred triangles has an angle below {angle:.1}°: try another --isotropic, or a smaller \
-                 --max-aspect"
+                "one in a hundred triangles has an angle below {angle:.1}°: try another edge length (isotropic), or a \
+                 smaller aspect (max_aspect)"
             ),
             Self::Thinned { samples } => write!(
                 f,
