@@ -1,5 +1,5 @@
-//! For programs that hold cells in memory, like the Python package: what the commands do, with their options
-//! and checks, without files and messages.
+//! For programs that hold cells in memory, like the Python package: edits and pictures as the commands make them, with
+//! their options and checks, without files and messages. Meshes are those of the library (`neurotess::recipe`).
 
 pub use crate::commands::convert::EditRecipe;
 #[cfg(feature = "render")]

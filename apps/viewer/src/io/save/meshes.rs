@@ -1,6 +1,7 @@
 //! Meshes of neurons, by the recipe of the library: the same as the command line makes.
 
-use std::path::PathBuf;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -54,9 +55,19 @@ pub(crate) fn meshes(
 ) -> Result<Written, String> {
     let options = &options.fitting();
     let files = mesh_files(plans, options)?;
+    if !options.files.parts {
+        // Before any is written.
+        for file in &files {
+            existing(options.replace)
+                .check(file)
+                .map_err(|e| e.to_string())?;
+        }
+    }
     let (mut faces, mut written) = (0, Vec::new());
     let mut remarks = Vec::new();
-    for (plan, file) in plans.iter().zip(&files) {
+    let mut last: Option<MadeMesh> = None;
+    for index in by_tracing(plans) {
+        let (plan, file) = (&plans[index], &files[index]);
         let stopped = || format!("stopped after {} of {} meshes", written.len(), files.len());
         if progress.is_canceled() {
             return Err(stopped());
@@ -68,7 +79,7 @@ pub(crate) fn meshes(
             progress,
             is_alone: files.len() == 1,
         };
-        match caught(|| one.save(file)) {
+        match caught(|| one.save(file, &mut last)) {
             Ok((saved, said)) => {
                 faces += saved.triangles + saved.quads;
                 written.extend(saved.files.first().cloned());
@@ -98,6 +109,23 @@ pub(crate) fn meshes(
         status: format!("Saved {what}: {} faces", grouped(faces as u64)),
         remarks,
     })
+}
+
+/// Indices of plans, those of a tracing one after the other: it is meshed once.
+fn by_tracing(plans: &[MeshPlan]) -> Vec<usize> {
+    let mut first: HashMap<*const Generated, usize> = HashMap::new();
+    for (index, plan) in plans.iter().enumerate() {
+        first.entry(Arc::as_ptr(&plan.generated)).or_insert(index);
+    }
+    let mut order: Vec<usize> = (0..plans.len()).collect();
+    order.sort_by_key(|&index| first[&Arc::as_ptr(&plans[index].generated)]);
+    order
+}
+
+/// A cell that was meshed, and the coarse mesh that is drawn of it.
+struct MadeMesh {
+    drawn: Arc<Generated>,
+    cell: CellMesh,
 }
 
 fn failures(remarks: &[(String, String)]) -> String {
@@ -145,11 +173,27 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Saves it; also gives what is to be said of the mesh.
-    fn save(&self, file: &std::path::Path) -> Result<(Saved, Vec<String>), String> {
+    /// Saves it; also gives what is to be said of the mesh. `last`: what was saved before, which may be of the same tracing.
+    fn save(
+        &self,
+        file: &Path,
+        last: &mut Option<MadeMesh>,
+    ) -> Result<(Saved, Vec<String>), String> {
         let tell = |told: recipe::Progress| self.tell(told);
         let watch = Watch::stopped_by(&self.progress.canceled).with_progress(&tell);
-        let cell = self.mesh(&watch)?;
+        let drawn = &self.plan.generated;
+        // Levels of the picture are other ones for each neuron.
+        let is_same = |last: &MadeMesh| Arc::ptr_eq(&last.drawn, drawn) && !self.options.as_shown;
+        let again = last.take().filter(is_same);
+        let is_again = again.is_some();
+        let made = match again {
+            Some(made) => made,
+            None => MadeMesh {
+                drawn: Arc::clone(drawn),
+                cell: self.mesh(&watch)?,
+            },
+        };
+        let cell = &last.insert(made).cell;
         let mut to = SaveOptions::new(self.options.files.format);
         to.files = self.options.files;
         to.existing = existing(self.options.replace);
@@ -160,10 +204,16 @@ impl Job<'_> {
             e => e.to_string(),
         })?;
         // What is to be said of the coarse mesh is said where the tracing was opened.
-        let warnings = cell.report().warnings.into_iter();
-        let of_surface = warnings.filter(|warning| matches!(warning, Warning::Surface(_)));
+        let warnings = match is_again {
+            true => Vec::new(),
+            false => cell.report().warnings,
+        };
+        let of_surface = warnings
+            .into_iter()
+            .filter(|warning| matches!(warning, Warning::Surface(_)));
         let said = of_surface.map(|warning| warning.to_string());
-        let of_walls = saved.warning.as_ref().map(ToString::to_string);
+        let of_walls = saved.warning.as_ref().filter(|_| !is_again);
+        let of_walls = of_walls.map(ToString::to_string);
         let said = said.chain(of_walls).collect();
         Ok((saved, said))
     }
@@ -230,5 +280,4 @@ fn world_from_cell(placement: &Placement) -> DAffine3 {
 }
 
 #[cfg(test)]
-#[path = "meshes_tests.rs"]
 mod tests;

@@ -1,7 +1,5 @@
 //! What is saved of neurons.
 
-use std::path::Path;
-
 use neurotess::mesh::{self, Format};
 use neurotess::recipe::Crossings;
 
@@ -143,7 +141,7 @@ fn what_is_stopped_leaves_nothing() {
         progress: &progress,
         is_alone: true,
     };
-    assert_eq!(job.save(&out).expect_err("stopped"), "stopped");
+    assert_eq!(job.save(&out, &mut None).expect_err("stopped"), "stopped");
     let stopped = meshes(&[plan("a")], &options, &seen_from(), &progress);
     assert!(stopped.expect_err("stopped").starts_with("stopped"));
     assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 0);
@@ -184,4 +182,22 @@ fn one_that_fails_keeps_no_other_from_being_saved() {
     };
     assert!(name == "bad" && why.contains("'poisson'"), "{why}");
     assert!(out.join("good.ply").exists() && !out.join("bad.ply").exists());
+}
+
+#[test]
+fn a_tracing_of_several_neurons_is_meshed_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (first, other) = (plan("a"), plan("b"));
+    let mut elsewhere = first.clone();
+    elsewhere.name = "c".into();
+    elsewhere.placement.translation *= 2.0;
+    let plans = [first, other, elsewhere];
+    assert_eq!(by_tracing(&plans), [0, 2, 1]);
+    let mut merged = options(&folder.path().join("all"), Format::Ply);
+    merged.recipe = merged.recipe.with_crossings(Crossings::Merge);
+    save(&plans, &merged).expect("written");
+    let at = |name: &str| read(&folder.path().join("all").join(name));
+    let (a, c) = (at("a.ply"), at("c.ply"));
+    assert_eq!(a.faces, c.faces);
+    assert!((c.origin.x - a.origin.x - 1000.0).abs() < 1e-6);
 }
