@@ -144,7 +144,7 @@ fn saved_pictures_have_the_axes_that_show() {
     assert_ne!(picture(&mut window, "without.png"), with);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn meshes_for_simulation_are_saved_by_the_panel_and_stop() {
     let mut window = with_samples(&[Kind::Granule]);
     let folder = tempfile::tempdir().expect("a folder");
