@@ -1,18 +1,22 @@
 //! What a face shows of the cell: the one rule by which files and tables give a face a type, a section
 //! and a tracing point.
 //!
-//! **The rule.** Corners know their tracing points; a face takes all three from one of its corners. That
-//! is a corner of the lowest section, since sections are numbered from the soma on: a face between two
-//! sections belongs to the one nearer to the soma. If all corners are of one section, it is the tracing
-//! point of two or three of them; if these are three points, the first corner's.
+//! **The rule.** Corners know their tracing points; a face takes all three from one of its corners. With a corner
+//! on a soma (section 0) that is this one. Otherwise it is a corner of the highest section, since sections are
+//! numbered from the soma on, and the way from a fork to the first point of a child is the child's: so the area of
+//! a section is that of its frusta. If all corners are of one section, it is the tracing point of two or three of
+//! them; if these are three points, the first corner's.
 //!
 //! **Why not** the majority alone: a quad between two rings is two triangles, one with two corners on
 //! the first ring, one with two on the second. The border between two sections would be a saw. By the
-//! lowest section it runs along a ring.
+//! section it runs along a ring.
 
 use std::borrow::Cow;
 
 use crate::SurfaceVertex;
+
+/// The section of somata.
+const SOMA: i32 = 0;
 
 /// What a face shows of the cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,11 +37,12 @@ impl FaceLabel {
             section: v.section,
             kind: v.kind,
         });
-        let lowest = a.section.min(b.section).min(c.section);
+        let [low, high] = [i32::min, i32::max].map(|of| of(of(a.section, b.section), c.section));
+        let shown = if low == SOMA { low } else { high };
         if a.section == b.section && b.section == c.section && b == c {
             return b;
         }
-        let first = [a, b, c].into_iter().find(|label| label.section == lowest);
+        let first = [a, b, c].into_iter().find(|label| label.section == shown);
         first.unwrap_or(a)
     }
 }

@@ -28,7 +28,7 @@ struct SurfacePoint {
     axis: vec3<f32>,
     radius: f32,
     // The vertex whose attributes it has.
-    nearest: u32,
+    shown: u32,
 }
 
 fn patch_side(base: Base, p: Patch, index: u32) -> Side {
@@ -156,30 +156,32 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
     let normal = edge_normal(s.kind, a, b, jet.derivative, t);
-    var nearest = s.end;
-    if (t < 0.5) {
-        nearest = s.start;
+    // What is between two rings belongs to the second.
+    let is_link = s.kind == EDGE_ALONG || s.kind == EDGE_LOFT;
+    var shown = s.end;
+    if (t < 0.5 && !is_link) {
+        shown = s.start;
     }
     if (s.kind == EDGE_SOMA) {
         // A soma's edges belong to the soma up to the neurite's ring.
         if (a.role == ROLE_SOMA) {
-            nearest = s.start;
+            shown = s.start;
         } else if (b.role == ROLE_SOMA) {
-            nearest = s.end;
+            shown = s.end;
         }
-        return SurfacePoint(jet.position, normal, jet.position, 0.0, nearest);
+        return SurfacePoint(jet.position, normal, jet.position, 0.0, shown);
     }
     if (s.kind == EDGE_LOFT) {
         let ends = vec2<f32>(1.0 - t, t);
         let axis = axis_of(a) * ends.x + axis_of(b) * ends.y;
-        return SurfacePoint(jet.position, normal, axis, dot(vec2(width_of(a), width_of(b)), ends), nearest);
+        return SurfacePoint(jet.position, normal, axis, dot(vec2(width_of(a), width_of(b)), ends), shown);
     }
     if (s.kind == EDGE_RING) {
-        return SurfacePoint(jet.position, normal, a.center, a.radius, nearest);
+        return SurfacePoint(jet.position, normal, a.center, a.radius, shown);
     }
     let axis = center_line(a, b, options.path, t).position;
     let radius = profile_radius(profile_between(a, b, options.path), t);
-    return SurfacePoint(jet.position, normal, axis, radius, nearest);
+    return SurfacePoint(jet.position, normal, axis, radius, shown);
 }
 
 // Point of the center line at a corner, and the radius there: somata have none.
@@ -208,17 +210,19 @@ fn inner_vertex(
     let y = f32(j) / f32(grid.ny);
     let shape = patch_shape(source, p);
     let inside = interior(shape, options.path, options.caps, x, y);
-    var nearest = p.corners.x;
-    if (x >= 0.5 && y < 0.5) {
-        nearest = p.corners.y;
+    // What is between two rings belongs to the second.
+    let is_second = y >= 0.5 || p.kind == PATCH_LATERAL || p.kind == PATCH_LOFT;
+    var shown = p.corners.x;
+    if (x >= 0.5 && !is_second) {
+        shown = p.corners.y;
     } else if (x >= 0.5) {
-        nearest = p.corners.z;
-    } else if (y >= 0.5) {
-        nearest = p.corners.w;
+        shown = p.corners.z;
+    } else if (is_second) {
+        shown = p.corners.w;
     }
     if (p.kind == PATCH_SOMA) {
-        nearest = first_of_soma(shape, p, nearest);
-        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, nearest);
+        shown = first_of_soma(shape, p, shown);
+        return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, shown);
     }
     var radius = (width_of(shape.a) * (1.0 - x) + width_of(shape.b) * x) * (1.0 - y)
         + (shape.d.radius * (1.0 - x) + shape.c.radius * x) * y;
@@ -231,7 +235,7 @@ fn inner_vertex(
         axis = center_line(shape.a, shape.d, options.path, y).position;
         radius = profile_radius(profile_between(shape.a, shape.d, options.path), y);
     }
-    return SurfacePoint(inside.position, inside.normal, axis, radius, nearest);
+    return SurfacePoint(inside.position, inside.normal, axis, radius, shown);
 }
 
 fn first_of_soma(shape: PatchShape, p: Patch, otherwise: u32) -> u32 {

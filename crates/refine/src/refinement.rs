@@ -237,6 +237,8 @@ struct InnerEdge<'r> {
     normals: EdgeNormals,
     level: u16,
     tracing: [&'r TracingPoint; 2],
+    /// Whether it links two rings: what is between belongs to the second.
+    is_link: bool,
     /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
     soma: Option<&'r TracingPoint>,
 }
@@ -251,6 +253,7 @@ impl<'r> InnerEdge<'r> {
             normals: EdgeNormals::new(plan.kind, a, b),
             level: plan.level,
             tracing,
+            is_link: matches!(plan.kind, EdgeKind::Along | EdgeKind::Loft),
             soma: tracing.into_iter().find(of_soma),
         }
     }
@@ -262,8 +265,8 @@ impl<'r> InnerEdge<'r> {
         let normal = self.normals.at(jet.derivative, t);
         let [ta, tb] = self.tracing;
         let radius = self.curve.radius(t);
-        let nearest = if t < 0.5 { ta } else { tb };
-        attributed(jet.position, normal, self.soma.unwrap_or(nearest), radius)
+        let shown = if t < 0.5 && !self.is_link { ta } else { tb };
+        attributed(jet.position, normal, self.soma.unwrap_or(shown), radius)
     }
 }
 
@@ -274,6 +277,8 @@ struct InnerVertices<'r> {
     options: &'r RefineOptions,
     /// By corner.
     tracing: [&'r TracingPoint; 4],
+    /// Whether it links two rings.
+    is_link: bool,
     /// That of the soma, which all vertices of its patches show.
     soma: Option<&'r TracingPoint>,
 }
@@ -290,6 +295,7 @@ impl<'r> InnerVertices<'r> {
                 .grid(refinement.mesh, &refinement.options, patch),
             options: &refinement.options,
             tracing,
+            is_link: matches!(kind, PatchKind::Lateral | PatchKind::Loft),
             soma: tracing.into_iter().find(of_soma),
         }
     }
@@ -310,9 +316,11 @@ impl<'r> InnerVertices<'r> {
             j as f32 / self.grid.ny as f32,
         );
         let (position, normal) = row.point(x);
-        let nearest = usize::from(y >= 0.5) * 2 + usize::from((x >= 0.5) != (y >= 0.5));
+        // What is between two rings belongs to the second.
+        let is_second = y >= 0.5 || self.is_link;
+        let shown = usize::from(is_second) * 2 + usize::from((x >= 0.5) != is_second);
         let radius = row.radius(x);
-        let tracing = self.soma.unwrap_or(self.tracing[nearest]);
+        let tracing = self.soma.unwrap_or(self.tracing[shown]);
         attributed(position, normal, tracing, radius)
     }
 }

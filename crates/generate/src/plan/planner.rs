@@ -305,11 +305,24 @@ impl<'a> Planner<'a> {
         };
         let last = way.nodes.len() - 1;
         let node = way.nodes[nearest(line, place.arc).clamp(1.min(last), last)];
+        let ring = self.traced(node);
+        // The section and type are those of the segment that it lies on, which belongs to its lower node.
+        let after = line
+            .arcs
+            .partition_point(|&arc| arc < place.arc)
+            .clamp(1, last);
+        let [before, after] = [after - 1, after].map(|index| way.nodes[index]);
+        let is_upward = self.base.node(before).parent == after;
+        let lower = Label::of(self.base.node(if is_upward { before } else { after }));
         PlannedRing {
             center: line.at(place.arc),
             radius: line.radius(place.arc),
             kind,
-            ..self.traced(node)
+            label: Label {
+                sample: ring.label.sample,
+                ..lower
+            },
+            ..ring
         }
     }
 

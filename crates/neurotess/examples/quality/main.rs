@@ -5,7 +5,8 @@
 //! ```
 //!
 //! At levels 2 and 4: crossing pairs of facets within four radii of a fork, all of them, and facets folded by more than
-//! 120°. At level 4 also the volume, and the share of the area near forks that is off the branches' round cones.
+//! 120°. At level 4 also the volume, the share of the area near forks that is off the branches' round cones, and by how much
+//! the area of sections differs from their frusta: the median, and the 95th percentile.
 
 use std::path::Path;
 use std::time::Instant;
@@ -20,6 +21,7 @@ use tree::Tree;
 
 mod facets;
 mod off;
+mod sections;
 mod tree;
 
 /// Most patches of a part that is packed for the device.
@@ -68,7 +70,10 @@ fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
         if level == 4 {
             let (volume, area) = refinement.volume_and_area();
             let off = off::share(&positions, &surface.faces.triangles, &tree);
-            line += &format!(r#", "volume": {volume}, "area": {area}, "off": {off}"#);
+            let [median, worst] = sections::area_off(&surface, &morphology);
+            line += &format!(
+                r#", "volume": {volume}, "area": {area}, "off": {off}, "sections": {median}, "sections_95": {worst}"#
+            );
         }
     }
     Ok(line + "}")

@@ -39,7 +39,7 @@ fn keys_of_drawn(listed: vec2<u32>, i: u32, j: u32) -> SurfaceKeys {
     let v = grid_vertex(part, p, frame.levels, levels, grid, min(i, grid.nx), min(j, grid.ny));
     var corner = 0u;
     for (var c = 1u; c < 4u; c += 1u) {
-        corner = select(corner, c, p.corners[c] == v.nearest);
+        corner = select(corner, c, p.corners[c] == v.shown);
     }
     return keys_of_patch(listed.x, corner);
 }
@@ -64,6 +64,6 @@ fn keys_of_tube(point: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32) -> Su
         let level = select(levels.y, levels.w, i == 0u);
         y = f32(snap(j, grid.ny, level)) / f32(level);
     }
-    let corner = select(0u, 2u, y >= 0.5);
+    let corner = select(0u, 2u, y > 0.0);
     return SurfaceKeys(vec4(start.color_key, start.color_key, end, end), corner, start.instance);
 }

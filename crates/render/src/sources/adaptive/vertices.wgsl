@@ -133,7 +133,7 @@ fn listed_other_vertex(listed: vec2<u32>, i: u32, j: u32) -> SurfaceVertex {
         v.normal,
         v.axis,
         v.radius,
-        coarse[coarse_index(coarse_place(part, v.nearest))].color_key,
+        coarse[coarse_index(coarse_place(part, v.shown))].color_key,
         part.instance,
         wire_grid(p.kind, grid, column, row),
     );
