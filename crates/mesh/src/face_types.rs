@@ -12,6 +12,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use crate::SurfaceVertex;
+use crate::label::section_of;
 
 /// A section and a type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,17 +114,17 @@ impl FaceTypes<'_> {
         if a.section == b.section && b == c {
             return b;
         }
-        let lowest = a.section.min(b.section).min(c.section);
-        let first = [a, b, c].into_iter().find(|at| at.section == lowest);
+        let shown = section_of([a, b, c].map(|corner| corner.section));
+        let first = [a, b, c].into_iter().find(|at| at.section == shown);
         first.unwrap_or(a)
     }
 
-    /// The section and type of a quad: those of the half that is nearer to the soma.
+    /// The section and type of a quad: of its two halves as of the corners of a triangle.
     pub(crate) fn quad(&mut self, [a, b, c, d]: [u32; 4]) -> SectionType {
         let [first, second] = [[a, b, c], [a, c, d]].map(|half| self.triangle(half));
-        match second.section < first.section {
-            true => second,
-            false => first,
+        match section_of([first.section, second.section]) == first.section {
+            true => first,
+            false => second,
         }
     }
 

@@ -37,13 +37,20 @@ impl FaceLabel {
             section: v.section,
             kind: v.kind,
         });
-        let [low, high] = [i32::min, i32::max].map(|of| of(of(a.section, b.section), c.section));
-        let shown = if low == SOMA { low } else { high };
+        let shown = section_of([a, b, c].map(|label| label.section));
         if a.section == b.section && b.section == c.section && b == c {
             return b;
         }
         let first = [a, b, c].into_iter().find(|label| label.section == shown);
         first.unwrap_or(a)
+    }
+}
+
+/// The section of a face whose corners are of these sections.
+pub(crate) fn section_of<const N: usize>(corners: [i32; N]) -> i32 {
+    match corners.contains(&SOMA) {
+        true => SOMA,
+        false => corners.into_iter().fold(SOMA, i32::max),
     }
 }
 

@@ -9,7 +9,7 @@ use serde_json::Value;
 const WORSE: f64 = 1.05;
 
 /// Figures whose sums are compared, with how much of them is a trifle in all cells together.
-const COMPARED: [(&str, f64); 8] = [
+const COMPARED: [(&str, f64); 10] = [
     ("near_2", 5.0),
     ("pairs_2", 5.0),
     ("folded_2", 5.0),
@@ -17,15 +17,16 @@ const COMPARED: [(&str, f64); 8] = [
     ("pairs_4", 5.0),
     ("folded_4", 5.0),
     ("off", 1e-3),
+    ("sections", 1e-3),
+    ("sections_95", 1e-2),
     ("bytes", 0.1),
 ];
 
 /// Markdown, a row for each cell and one of sums.
 pub(super) fn table(figures: &Value) -> String {
     let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
-    text += "| cell | points | near, all, folded: 2 | 4 | off % | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
-    text +=
-        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
+    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     for cell in cells(figures) {
         let file = cell["file"].as_str().unwrap_or_default();
         let name = Path::new(file).file_stem().unwrap_or_default();
@@ -39,11 +40,13 @@ pub(super) fn table(figures: &Value) -> String {
         let of = |key: &str| number(&simulation[key]);
         let _ = writeln!(
             text,
-            "| {name}{open} | {} | {} | {} | {:.2} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
+            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
             cell["points"],
             counts(cell, 2),
             counts(cell, 4),
             100.0 * number(&cell["off"]),
+            100.0 * number(&cell["sections"]),
+            100.0 * number(&cell["sections_95"]),
             number(&cell["volume"]),
             number(&cell["bytes"]),
             1e3 * number(&cell["seconds"]),
@@ -63,11 +66,13 @@ pub(super) fn table(figures: &Value) -> String {
     };
     let _ = writeln!(
         text,
-        "| **all** (off, bytes: mean) | {} | {} | {} | {:.2} | {:.0} | {:.1} | {:.0} | | | | |",
+        "| **all** (off, sections, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.0} | {:.1} | {:.0} | | | | |",
         all("points"),
         counts(2),
         counts(4),
         100.0 * all("off") / cells,
+        100.0 * all("sections") / cells,
+        100.0 * all("sections_95") / cells,
         all("volume"),
         all("bytes") / cells,
         1e3 * all("seconds"),
@@ -118,7 +123,9 @@ pub(super) fn compare(before: &Value, after: &Value) -> Compared {
     for (key, trifle) in COMPARED {
         let [was, is] = [before, after].map(|figures| sum(figures, key));
         row(&mut compared.text, key, was, is);
-        if is > WORSE * was && is - was > trifle {
+        // Figures of earlier commits may lack some.
+        let known = cells(before).iter().any(|cell| !cell[key].is_null());
+        if known && is > WORSE * was && is - was > trifle {
             compared.worse.push(key.to_owned());
         }
     }
