@@ -50,6 +50,16 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-color",
         ],
     ),
+    (
+        "neurotess-web",
+        &[
+            "neurotess-morphology",
+            "neurotess-mesh",
+            "neurotess-refine",
+            "neurotess-render",
+            "neurotess-color",
+        ],
+    ),
     ("neurotess-output", &[]),
     ("neurotess-plot", &["neurotess-morphology"]),
     (
@@ -88,6 +98,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-cache",
             "neurotess-union",
             "neurotess-recipe",
+            "neurotess-web",
         ],
     ),
     ("neurotess-viewer", &["neurotess"]),

@@ -14,6 +14,7 @@ use crate::commands::view::{self, ViewArgs};
 #[cfg(feature = "render")]
 use crate::commands::{
     bench::{self, BenchArgs},
+    html::{self, HtmlArgs},
     render::{self, RenderArgs},
 };
 use crate::commands::{completions, man, version};
@@ -69,6 +70,9 @@ pub(crate) enum Command {
     /// Draw cells, without a window
     #[cfg(feature = "render")]
     Render(Box<RenderArgs>),
+    /// Write cells as one HTML page, to be sent: it opens without a server
+    #[cfg(feature = "render")]
+    Html(Box<HtmlArgs>),
     /// Open the window: look, pick, tune somata, save
     #[cfg(feature = "view")]
     View(ViewArgs),
@@ -119,6 +123,8 @@ impl Cli {
             Some(Command::Diff(args)) => diff::run(args, reporter),
             #[cfg(feature = "render")]
             Some(Command::Render(args)) => render::run(args, reporter),
+            #[cfg(feature = "render")]
+            Some(Command::Html(args)) => html::run(args, reporter),
             #[cfg(feature = "view")]
             Some(Command::View(args)) => view::run(args, reporter),
             #[cfg(feature = "render")]

@@ -68,6 +68,7 @@
 //! | [`refine`] | from a coarse mesh to a surface | |
 //! | [`render`] | from coarse meshes to pictures | `render` |
 //! | [`coloring`] | what the colors of pictures tell | `render` |
+//! | [`web`] | cells as one HTML page | `render` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
 //! | [`recipe`] | from a tracing to the mesh that a purpose needs, its files and its picture: all stages by one value of options | pictures: `render` |
@@ -99,6 +100,8 @@ pub use neurotess_render as render;
 #[cfg(feature = "synth")]
 pub use neurotess_synth as synth;
 pub use neurotess_union as union;
+#[cfg(feature = "render")]
+pub use neurotess_web as web;
 
 /// The code of docs/library.md.
 #[cfg(all(doctest, feature = "render"))]

@@ -104,6 +104,7 @@ pub fn constants() -> Constants {
     whole("EDGE_LOFT", EDGE_LOFT);
     whole("SIDE_KIND", SIDE_KIND);
     whole("SIDE_REVERSED", SIDE_REVERSED);
+    whole("LEVELS_HOMOGENEOUS", LEVELS_HOMOGENEOUS);
     whole("LEVELS_PER_POINT", LEVELS_PER_POINT);
     whole("LEVELS_MAX_ERROR", LEVELS_MAX_ERROR);
     whole("LEVELS_DISTANCE", LEVELS_DISTANCE);

@@ -65,6 +65,16 @@ impl Constants {
         self.flags.insert(name);
     }
 
+    /// The names and values of all that are single numbers: for hosts that are not in Rust.
+    pub fn numbers(&self) -> Vec<(String, f64)> {
+        let number = |line: &str| {
+            let (name, value) = line.strip_prefix("const ")?.split_once(" = ")?;
+            let value = value.trim_end_matches(';').trim_end_matches('u');
+            Some((name.split(':').next()?.to_owned(), value.parse().ok()?))
+        };
+        self.text.lines().filter_map(number).collect()
+    }
+
     /// Adds the constants and flags of another.
     pub fn extend(&mut self, other: &Self) {
         self.text.push_str(&other.text);
@@ -189,6 +199,15 @@ fn add(
 }
 
 impl Shader {
+    /// The text in pieces, in their order: one for each file, the constants first.
+    pub fn pieces(&self) -> Vec<String> {
+        let ends = self.starts.iter().skip(1).map(|&(_, start)| start);
+        let lines: Vec<&str> = self.text.lines().collect();
+        let all = self.starts.iter().zip(ends.chain([lines.len()]));
+        all.map(|(&(_, start), end)| lines[start..end].join("\n") + "\n")
+            .collect()
+    }
+
     /// File and line (from 1 on) that a line of the text (from 1 on) comes from.
     pub fn origin(&self, line: usize) -> (&'static str, usize) {
         let at = line.saturating_sub(1);
@@ -243,6 +262,7 @@ mod tests {
             one.text,
             "const N: u32 = 3u;\n// b\nfn b() {}\n\nfn a() {}\n\n\n\nfn one() {}\n\nfn z() {}\n"
         );
+        assert_eq!(parts.constants.numbers(), [("N".to_owned(), 3.0)]);
         parts.constants.flag("MANY");
         let many = compose("many", &parts, &[&[B]]);
         assert!(many.text.contains("fn many") && !many.text.contains("fn one"));
@@ -259,6 +279,7 @@ mod tests {
         assert_eq!(shader.origin(1), ("constants", 1));
         let said = format!("oh: wgsl:{}:4 and wgsl:x", line("fn z() {}"));
         let explained = shader.explain(&said);
+        assert_eq!(shader.pieces().concat(), shader.text);
         assert_eq!(explained, "oh: a.wgsl:8:4 and wgsl:x");
         assert_eq!(shader.explain(&explained), explained, "once is enough");
     }

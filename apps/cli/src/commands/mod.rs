@@ -6,6 +6,8 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod convert;
 pub(crate) mod diff;
+#[cfg(feature = "render")]
+pub(crate) mod html;
 pub(crate) mod info;
 pub(crate) mod man;
 pub(crate) mod mesh;

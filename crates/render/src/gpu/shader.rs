@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 47] = [
+pub(crate) const FILES: [WgslFile; 49] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources", "octahedral.wgsl"),
@@ -36,6 +36,7 @@ pub(crate) const FILES: [WgslFile; 47] = [
     file!("sources/adaptive", "expand.wgsl"),
     file!("sources/adaptive", "surface_id.wgsl"),
     file!("sources/adaptive", "vertex_keys.wgsl"),
+    file!("sources/adaptive", "surface_key.wgsl"),
     file!("sources/prerefined", "prerefined.wgsl"),
     file!("sources/markers", "markers.wgsl"),
     file!("sources/markers", "marker_id.wgsl"),
@@ -52,6 +53,7 @@ pub(crate) const FILES: [WgslFile; 47] = [
     file!("sources/budgeted", "visible_chunks_id.wgsl"),
     file!("sources/budgeted", "visible_chunk_keys.wgsl"),
     file!("shading", "shade.wgsl"),
+    file!("shading", "lighting.wgsl"),
     file!("shading", "keyed.wgsl"),
     file!("shading", "srgb.wgsl"),
     file!("shading", "finish.wgsl"),

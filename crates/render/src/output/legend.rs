@@ -68,6 +68,20 @@ impl Legend {
         matches!(self.kind, Kind::Bar { .. })
     }
 
+    /// What is above it; may be empty.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Numbers at the ends of its scale, and whether the upper end also stands for what lies above; none if
+    /// it has no scale.
+    pub fn range(&self) -> Option<([f32; 2], bool)> {
+        match self.kind {
+            Kind::Swatches(_) => None,
+            Kind::Bar { range, more, .. } => Some((range, more)),
+        }
+    }
+
     /// Adds a line below, such as the time of a picture.
     #[must_use]
     pub fn noted(mut self, note: &str) -> Self {

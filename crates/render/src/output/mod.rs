@@ -3,6 +3,7 @@
 pub(crate) mod annotation;
 pub(crate) mod axes;
 pub(crate) mod extent;
+pub(crate) mod host;
 pub(crate) mod ids;
 pub(crate) mod image;
 pub(crate) mod legend;

@@ -42,7 +42,7 @@ impl Default for Placement {
 
 impl Placement {
     /// Rotation and scale as a matrix.
-    pub(crate) fn linear(&self) -> DMat3 {
+    pub fn linear(&self) -> DMat3 {
         DMat3::from_quat(self.rotation) * self.scale
     }
 

@@ -120,7 +120,7 @@ impl Default for Look {
 }
 
 /// Direction of [`Light::Soft`]'s key light.
-const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
+pub(crate) const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
 
 /// Twin of `Shade` in `shade.wgsl`.
 #[repr(C)]
@@ -249,7 +249,7 @@ pub(crate) fn edge_color(look: &Look) -> [f32; 4] {
 pub(crate) const GUARD: f32 = 512.0;
 
 /// Half the width (pixels) of the thinnest line drawn: thinner ones would look dotted.
-const HALF_WIDTH: f32 = 0.5;
+pub(crate) const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a source's vertices.
 pub(crate) struct Shader {

@@ -3,6 +3,7 @@
 // is the number of samples of a sub-pixel.
 
 #import surface_vertex.wgsl
+#import lighting.wgsl
 
 struct Shade {
     clip_from_relative: mat4x4<f32>,
@@ -161,15 +162,6 @@ fn unsnapped(clip: vec4<f32>) -> vec4<f32> {
     return vec4(clip.xy * scale + vec2(shift.x, -shift.y) * clip.w, clip.z, clip.w);
 }
 
-// Coverage of a line by the share of a pixel that it fills. With coverage equal to that share, the
-// axons of a whole cell nearly vanish: 0.3 of a pixel in linear light can hardly be seen on white.
-// This rises faster: it is 0.5 for a twentieth of a pixel and 0.9 for 0.3. Chosen by eye on the
-// samples and on real cells of 1 to 3 mm.
-fn ink_of(share: f32) -> f32 {
-    let rest = 1.0 - sqrt(share);
-    return 1.0 - rest * rest * rest;
-}
-
 fn state_of(instance: u32) -> u32 {
     let last = arrayLength(&states) - 1u;
     return select(0u, states[min(instance, last)], instance <= last);
@@ -188,6 +180,13 @@ fn shown_part(state: u32, radius: f32, coverage: f32) -> f32 {
     }
     return coverage;
 }
+
+#ifdef HIDES
+// Whether a category is left out: the last component of its color is 0.
+fn is_hidden(color_key: u32) -> bool {
+    return (color_key & CATEGORY_BIT) != 0u && table[category_entry(color_key & ~CATEGORY_BIT)].a == 0.0;
+}
+#endif
 
 fn shaded_vertex(vertex_index: u32, instance_index: u32) -> ShadedVertex {
     var v = surface_vertex(vertex_index, instance_index);
@@ -225,6 +224,10 @@ fn shaded_vertex(vertex_index: u32, instance_index: u32) -> ShadedVertex {
         coverage *= shade.ghosted;
     }
     coverage = shown_part(state, v.radius, coverage);
+#ifdef HIDES
+    // As in `shown_part`, far below 0.
+    coverage = select(coverage, -1000.0, is_hidden(v.color_key));
+#endif
     out.normal = v.normal;
     out.color = color.rgb;
     if (state & HIGHLIGHTED) != 0u {
@@ -272,38 +275,6 @@ struct Sample {
 #ifdef MULTISAMPLED
     @builtin(sample_mask) mask: u32,
 #endif
-}
-
-// How a surface is lit, whatever its color.
-struct Lights {
-    // Share of its color that it returns.
-    diffuse: f32,
-    // White that is added.
-    sheen: f32,
-    // Light from behind along the outline: returned in its color, and a quarter of it white.
-    rim: f32,
-}
-
-// A key light from the upper left, a weak fill light from the lower right, and a sky brighter than
-// the ground. The weights were chosen by eye on real cells, so that a surface that faces the viewer
-// has the color of the legend.
-fn lights(n: vec3<f32>, to_eye: vec3<f32>) -> Lights {
-    let key = max((dot(n, shade.key) + 0.3) / 1.3, 0.0);
-    let fill = max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
-    let sky = 0.5 + 0.5 * n.y;
-    let diffuse = 0.85 * key * key + 0.18 * fill + mix(0.22, 0.52, sky);
-    // A broad highlight, so that the shape of black things shows.
-    let half = normalize(shade.key + to_eye);
-    let sheen = 0.045 * pow(max(dot(n, half), 0.0), 10.0) + 0.05 * pow(max(dot(n, half), 0.0), 60.0);
-    // The rim makes a thing stand out from what is behind it.
-    let grazing = 1.0 - max(dot(n, to_eye), 0.0);
-    let rim = 0.16 * grazing * grazing * grazing * mix(0.4, 1.0, sky);
-    return Lights(diffuse, sheen, rim);
-}
-
-// A color in these lights; `white`: how much of it there is, 0 to 1.
-fn light(albedo: vec3<f32>, white: f32, l: Lights) -> vec3<f32> {
-    return albedo * l.diffuse + l.sheen * white + l.rim * (0.25 * white + albedo);
 }
 
 // Coverage by lines, which run where x, y or x + y is a whole number; with half their width (sub-pixels).

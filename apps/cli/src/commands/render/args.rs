@@ -1,9 +1,10 @@
 //! `neurotess render`: its options.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 use neurotess::coloring::OwnColors;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
 use neurotess::render::{Look, MOST_BUDGET};
@@ -257,7 +258,22 @@ pub(crate) struct RenderArgs {
     pub(crate) cells: CellArgs,
 }
 
+/// The options alone.
+#[derive(Debug, Parser)]
+struct Alone {
+    #[command(flatten)]
+    args: RenderArgs,
+}
+
 impl RenderArgs {
+    /// The usual options for these inputs.
+    pub(crate) fn of(inputs: &[PathBuf]) -> Self {
+        let words = ["render", "-o", "-", "--"].map(OsString::from);
+        let inputs = inputs.iter().map(|input| input.clone().into_os_string());
+        let parsed = Alone::try_parse_from(words.into_iter().chain(inputs));
+        parsed.expect("it needs inputs and an output only").args
+    }
+
     /// The palette of all that has no color of its own.
     pub(crate) fn base_palette(&self) -> Palette {
         self.palette.0.base.unwrap_or_default()
@@ -325,12 +341,12 @@ impl RenderArgs {
 }
 
 /// Color maps by name; shells complete them.
-fn color_maps() -> impl TypedValueParser<Value = ColorMap> {
+pub(crate) fn color_maps() -> impl TypedValueParser<Value = ColorMap> {
     let names = ColorMap::ALL.map(ColorMap::name);
     PossibleValuesParser::new(names).try_map(|name| name.parse::<ColorMap>())
 }
 
-fn range(text: &str) -> Result<[f32; 2], String> {
+pub(crate) fn range(text: &str) -> Result<[f32; 2], String> {
     let ends: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match ends.as_deref() {
         Some(&[low, high]) if low.is_finite() && high.is_finite() && low < high => Ok([low, high]),

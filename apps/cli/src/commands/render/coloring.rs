@@ -167,7 +167,8 @@ pub(crate) fn of_pictures(
                 Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
                 None => None,
             };
-            let by = by(args.color_by.unwrap_or(ColorBy::Type));
+            // Values have been handled: arguments were checked, so that they come with a report.
+            let by = args.color_by.and_then(by).unwrap_or_default();
             let by_tracing = || coloring::coloring(&cells, by, &scheme);
             let coloring = coloring.unwrap_or_else(by_tracing);
             PictureColors {
@@ -267,20 +268,21 @@ fn whole(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow::anyhow!("{error}")
 }
 
-fn stem(file: &str) -> String {
+pub(crate) fn stem(file: &str) -> String {
     let stem = Path::new(file).file_stem().unwrap_or_default();
     stem.to_string_lossy().into_owned()
 }
 
-fn by(what: ColorBy) -> coloring::ColorBy {
-    match what {
-        // Values have been handled: arguments were checked, so that they come with a report.
-        ColorBy::Type | ColorBy::Value => coloring::ColorBy::Type,
+/// What colors tell; none for values.
+pub(crate) fn by(what: ColorBy) -> Option<coloring::ColorBy> {
+    Some(match what {
+        ColorBy::Value => return None,
+        ColorBy::Type => coloring::ColorBy::Type,
         ColorBy::Neurite => coloring::ColorBy::Neurite,
         ColorBy::Section => coloring::ColorBy::Section,
         ColorBy::BranchOrder => coloring::ColorBy::BranchOrder,
         ColorBy::Radius => coloring::ColorBy::Radius,
         ColorBy::PathDistance => coloring::ColorBy::PathDistance,
         ColorBy::Neuron => coloring::ColorBy::Neuron,
-    }
+    })
 }

@@ -17,7 +17,7 @@ const SHARE_OF_BUDGET: f64 = 0.2;
 ///
 /// # Errors
 /// Wrong usage; files that are invalid, or do not have what is asked for.
-pub(super) fn read(
+pub(crate) fn read(
     args: &RenderArgs,
     instances: Option<&CircuitInstances>,
     scheme: &ColorScheme,

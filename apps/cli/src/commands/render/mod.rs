@@ -16,7 +16,7 @@ mod draw;
 mod film;
 mod in_memory;
 mod job;
-mod markers;
+pub(crate) mod markers;
 mod meshes;
 mod palette;
 mod scene;
@@ -32,13 +32,19 @@ use neurotess::render::Gpu;
 
 use crate::io::output;
 use crate::report::{Entry, Reporter, usage};
-pub(crate) use args::RenderArgs;
-use cells::MeshedCell;
+pub(crate) use args::{ColorBy, RenderArgs, color_maps, range};
+pub(crate) use cells::MeshedCell;
+pub(crate) use circuit_instances::CircuitInstances;
+pub(crate) use coloring::{by, stem};
 pub use in_memory::{DrawError, Drawing, DrawingInput, Picked};
 use job::RenderJob;
 use meshes::SceneMeshes;
-use scene::RenderScene;
+pub(crate) use palette::{PaletteArg, PaletteParser, SetColor};
+pub(crate) use scene::RenderScene;
+pub(crate) use scene::read as read_scene;
 use stats::{Stage, Stages};
+pub(crate) use times::times;
+pub(crate) use values::RgbArg;
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {

@@ -37,7 +37,7 @@ impl PaletteArg {
 
 /// Reads [`PaletteArg`]s; shells complete the names.
 #[derive(Clone, Debug)]
-pub(super) struct PaletteParser;
+pub(crate) struct PaletteParser;
 
 impl TypedValueParser for PaletteParser {
     type Value = PaletteArg;

@@ -35,7 +35,7 @@ pub(crate) const FLAT_INDICES: u32 = 6;
 pub(crate) const FLAT_CORNER_SHIFT: u32 = 28;
 
 /// Small patches are drawn together until an instance of the draw has about this many vertices.
-const VERTICES_TOGETHER: u32 = 256;
+pub(crate) const VERTICES_TOGETHER: u32 = 256;
 
 // A vertex index says, from its low bits upwards: column, row, patch in the instance, bucket.
 pub(crate) const INDEX_PLACE_MASK: u32 = 0x7f;

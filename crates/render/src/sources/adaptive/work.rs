@@ -29,6 +29,8 @@ pub(crate) struct CoarsePoint {
 
 /// Dispatch arguments of a pass that takes an empty queue.
 const NO_GROUPS: [u32; 3] = [0, 1, 1];
+/// Numbers that queues have for each cluster: see clusters.wgsl.
+pub(crate) const QUEUE_U32S: usize = 4 + CLUSTER / 4;
 /// Most queues that are filled by one pass.
 const QUEUES: usize = 3;
 
@@ -122,7 +124,7 @@ impl Buffers {
         gpu.queue
             .write_buffer(&no_groups, 0, bytemuck::cast_slice(&none));
         // See clusters.wgsl.
-        let queues = (4 + CLUSTER / 4) * clusters + sections;
+        let queues = QUEUE_U32S * clusters + sections;
         let marks = 3 + 3 * clusters + (1 + BUCKETS) * sections;
         let placed = u32s(size_of::<Placed>(), sizes.placed);
         let coarse = u32s(

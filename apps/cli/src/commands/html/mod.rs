@@ -1,0 +1,233 @@
+//! `neurotess html`: cells as one HTML page that opens without a server.
+
+mod args;
+mod recording;
+
+use std::io::Write;
+
+use neurotess::coloring::{Cell, ColorBy, ColorScheme, Coloring, OwnColors, coloring};
+use neurotess::render::color::CATEGORY_BIT;
+use neurotess::render::{Look, Placement};
+use neurotess::web::{PageCell, PageMarker, PageOptions, PageRecording, PageScheme, page};
+use serde::Serialize;
+
+use crate::commands::render::{
+    CircuitInstances, MeshedCell, RenderArgs, RenderScene, markers, read_scene, stem,
+};
+use crate::io::output;
+use crate::report::{Entry, Failed, Reporter, count};
+pub(crate) use args::HtmlArgs;
+
+/// Pages are larger only by `--force`: mail takes them, and browsers open them at once.
+const MOST_BYTES: usize = 2_000_000;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Document {
+    out: String,
+    bytes: usize,
+    points: usize,
+    cells: Vec<String>,
+    failed: Vec<Failed>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    output::reserve_standard(&args.out, reporter)?;
+    output::check(&args.out, args.force)?;
+    let render = args.render_args();
+    let RenderScene {
+        entries,
+        placements,
+        instances,
+        ..
+    } = read_scene(&render, reporter)?;
+    let mut cells = Vec::new();
+    let mut failed = Vec::new();
+    for entry in entries {
+        match entry {
+            Entry::Done(cell) => cells.push(cell),
+            Entry::Failed(entry) => failed.push(entry),
+        }
+    }
+    let mut document = Document {
+        out: args.out.display().to_string(),
+        bytes: 0,
+        points: 0,
+        cells: Vec::new(),
+        failed,
+    };
+    if placements.is_empty() {
+        return reporter.document(&document);
+    }
+    let names = match &instances {
+        Some(instances) => instances.names(),
+        None => cells.iter().map(|cell| stem(&cell.file)).collect(),
+    };
+    let made = Content {
+        args,
+        render: &render,
+        cells: &cells,
+        placements: &placements,
+        names: &names,
+        instances: instances.as_ref(),
+    }
+    .page(reporter)?;
+    let bytes = made.html.len();
+    if bytes > MOST_BYTES && !args.force {
+        let size = size_text(bytes);
+        anyhow::bail!("the page would have {size}: leave out cells, or use --force");
+    }
+    let mut output = output::begin(&args.out, args.force)?;
+    output.file().write_all(made.html.as_bytes())?;
+    output.finish()?;
+    let points = count(made.points, "tracing point");
+    let (of, size) = (count(placements.len(), "cell"), size_text(bytes));
+    reporter.result(&format!("{}: {of}, {points}, {size}", document.out));
+    document.bytes = bytes;
+    document.points = made.points;
+    document.cells = names;
+    reporter.document(&document)
+}
+
+/// What a page is made of.
+struct Content<'a> {
+    args: &'a HtmlArgs,
+    render: &'a RenderArgs,
+    cells: &'a [MeshedCell],
+    placements: &'a [(usize, Placement)],
+    names: &'a [String],
+    instances: Option<&'a CircuitInstances>,
+}
+
+impl Content<'_> {
+    fn page(&self, reporter: &Reporter) -> anyhow::Result<neurotess::web::Page> {
+        let cells = self.cells();
+        let scheme = self.scheme();
+        let kinds = [
+            ColorBy::Type,
+            ColorBy::Neurite,
+            ColorBy::Section,
+            ColorBy::BranchOrder,
+            ColorBy::PathDistance,
+            ColorBy::Radius,
+            ColorBy::Neuron,
+        ];
+        // One neuron has one color.
+        let kinds = &kinds[..kinds.len() - usize::from(cells.len() == 1)];
+        let colorings: Vec<Coloring> = kinds
+            .iter()
+            .map(|&by| coloring(&cells, by, &scheme))
+            .collect();
+        let schemes: Vec<PageScheme<'_>> = kinds
+            .iter()
+            .zip(&colorings)
+            .map(|(&by, coloring)| PageScheme { by, coloring })
+            .collect();
+        let recording = match (&self.args.report, self.instances) {
+            (Some(report), Some(instances)) => Some(recording::read(
+                report, self.args, instances, &cells, reporter,
+            )?),
+            _ => None,
+        };
+        let page_cells: Vec<PageCell<'_>> = cells
+            .iter()
+            .zip(self.placements)
+            .map(|(&cell, &(_, placement))| PageCell { cell, placement })
+            .collect();
+        let options = self.options(kinds, recording.as_ref());
+        let markers = self.markers(&scheme, reporter)?;
+        let made = page(
+            &page_cells,
+            &schemes,
+            recording.as_ref(),
+            &markers,
+            &options,
+        );
+        // The message only: with its source, it would be printed twice.
+        made.map_err(|e| anyhow::anyhow!("{e}"))
+    }
+
+    fn cells(&self) -> Vec<Cell<'_>> {
+        let named = self.placements.iter().zip(self.names);
+        named
+            .map(|(&(cell, _), name)| Cell {
+                name,
+                morphology: &self.cells[cell].morphology,
+                mesh: &self.cells[cell].mesh,
+                radius_factor: self.render.radius_factor(),
+            })
+            .collect()
+    }
+
+    fn own_colors(&self) -> OwnColors {
+        self.render.own_colors()
+    }
+
+    fn scheme(&self) -> ColorScheme {
+        ColorScheme {
+            palette: self.render.base_palette(),
+            own_colors: self.own_colors(),
+            background: None,
+            scale: self.args.colormap.scale(),
+            range: self.args.range.filter(|_| self.args.report.is_none()),
+        }
+    }
+
+    fn options(&self, kinds: &[ColorBy], recording: Option<&PageRecording>) -> PageOptions {
+        let first = self.args.color_by.and_then(crate::commands::render::by);
+        let first = match (first, recording) {
+            (None, Some(_)) => None,
+            (by, _) => {
+                let by = by.unwrap_or_default();
+                Some(kinds.iter().position(|&kind| kind == by).unwrap_or(0))
+            }
+        };
+        let neurons = self.placements.len();
+        let least_width = self.args.least_width.map(|width| width as f32);
+        PageOptions {
+            title: self.args.title.clone().unwrap_or_else(|| title(self.names)),
+            background: self.args.background.map(|color| color.0),
+            palette: self.render.base_palette(),
+            own_colors: self.own_colors(),
+            color_map: self.args.colormap,
+            scheme: first,
+            least_width: least_width.unwrap_or_else(|| Look::usual_least_width(neurons)),
+        }
+    }
+
+    fn markers(
+        &self,
+        scheme: &ColorScheme,
+        reporter: &Reporter,
+    ) -> anyhow::Result<Vec<PageMarker>> {
+        let set = markers::read(self.render, self.instances, scheme, reporter)?;
+        let Some(set) = set else {
+            return Ok(Vec::new());
+        };
+        let marker = |marker: &neurotess::render::Marker| {
+            let color = set.colors.get((marker.color_key & !CATEGORY_BIT) as usize);
+            PageMarker {
+                position: marker.position.to_array(),
+                color: color.copied().unwrap_or_default(),
+            }
+        };
+        Ok(set.markers.iter().map(marker).collect())
+    }
+}
+
+/// The names of up to three cells, or how many there are.
+fn title(names: &[String]) -> String {
+    match names.len() {
+        0..=3 => names.join(", "),
+        n => count(n, "neuron"),
+    }
+}
+
+/// A number of bytes as people write it.
+fn size_text(bytes: usize) -> String {
+    match bytes {
+        0..1_000_000 => format!("{} kB", bytes.div_ceil(1000)),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}

@@ -1,0 +1,471 @@
+// The page: its parts put together.
+
+import { Camera } from './camera.js';
+import { Colors, css, isDark } from './colors.js';
+import { showLegend, showScale } from './legend.js';
+import { numbers, read, short, written } from './link.js';
+import { Loop } from './loop.js';
+import { listen } from './pointer.js';
+import { ply, save, surface } from './saving.js';
+import { drawn } from './picture.js';
+import { Scene } from './scene.js';
+import { STEPS, WebGpuRenderer } from './webgpu.js';
+import { WebGlRenderer } from './webgl.js';
+
+/** Levels of the slider; the first place is the automatic one. */
+const LEVELS = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
+/** Error (pixels) of automatic levels: at rest it cannot be seen. */
+const PIXELS = 0.5, DRAFT_PIXELS = 2, DRAFT_LEVEL = 3;
+/** Milliseconds between two questions what is under the pointer. */
+const HOVER = 70;
+const BACKGROUNDS = { light: /** @type {import('./colors.js').Rgb} */ ([255, 255, 255]), dark: /** @type {import('./colors.js').Rgb} */ ([21, 23, 27]) };
+/** Level of meshes that are saved while the level is automatic, as of the command. */
+const SAVED_LEVEL = 4;
+
+/** @template {HTMLElement} T @param {string} id @returns {T} */
+const byId = (id) => /** @type {T} */ (document.getElementById(id));
+
+export class App {
+  /** @param {{ shaders: any, cells: any, bytes: ArrayBuffer, first: number }} page */
+  constructor({ shaders, cells, bytes, first }) {
+    this.shaders = shaders;
+    this.scene = new Scene(cells, bytes, first, shaders.numbers);
+    this.colors = new Colors(this.scene);
+    this.camera = new Camera(this.scene.spheres);
+    this.canvas = /** @type {HTMLCanvasElement} */ (byId('canvas'));
+    this.message = byId('message');
+    /** What is measured or pinned. @type {import('./scene.js').Place[]} */
+    this.places = [];
+    this.background = /** @type {'own' | 'system' | 'light' | 'dark'} */ (cells.background ? 'own' : 'system');
+    this.measuring = false;
+    this.hovered = 0;
+    this.system = matchMedia('(prefers-color-scheme: dark)');
+  }
+
+  /** Opens a renderer: WebGPU, or else WebGL 2. */
+  async open() {
+    const begin = performance.now();
+    this.resize();
+    this.showBackground();
+    const wanted = read(location.hash).renderer;
+    const failed = (/** @type {string} */ message) => this.say(message);
+    /** @type {WebGpuRenderer | WebGlRenderer | null} */
+    let renderer = wanted === 'webgl' ? null : await WebGpuRenderer.open(this.canvas, this.scene, this.shaders, failed);
+    let said = '';
+    if (!renderer) {
+      renderer = WebGlRenderer.open(this.canvas, this.scene, this.shaders, failed);
+      said = 'Drawn with WebGL 2, since there is no WebGPU here: one level everywhere, no soft shadows.';
+    }
+    if (!renderer) {
+      this.say('This browser has neither WebGPU nor WebGL 2, one of which is needed: use a newer one, or turn hardware acceleration on.');
+      return;
+    }
+    this.renderer = renderer;
+    const steps = renderer instanceof WebGpuRenderer ? STEPS : 1;
+    this.loop = new Loop((how) => this.draw(how), () => /** @type {any} */ (this.renderer).done(), steps);
+    this.say(said);
+    this.makePanel();
+    this.camera.fit(this.aspect());
+    this.restore();
+    this.recolor();
+    this.watch();
+    this.loop.change();
+    this.opened = performance.now() - begin;
+    await new Promise((resolve) => setTimeout(resolve));
+    await renderer.done();
+    this.shown = performance.now() - begin;
+    await renderer.complete();
+    this.loop.refresh();
+  }
+
+  /** @param {string} text */
+  say(text) {
+    this.message.textContent = text;
+  }
+
+  aspect() {
+    return this.canvas.width / this.canvas.height;
+  }
+
+  resize() {
+    const { canvas } = this, ratio = devicePixelRatio;
+    const size = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(Math.round(n * ratio), 1));
+    if (canvas.width === size[0] && canvas.height === size[1]) return false;
+    [canvas.width, canvas.height] = size;
+    return true;
+  }
+
+  /** @param {boolean} draft @returns {import('./webgpu.js').Look} */
+  look(draft) {
+    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
+    const slow = draft && this.loop && this.loop.took > 100;
+    return {
+      lod: level ? { level: slow ? Math.min(level, DRAFT_LEVEL) : level } : { pixels: draft ? DRAFT_PIXELS : PIXELS },
+      wireframe: this.checked('wireframe'), occlusion: this.checked('occlusion'), lit: true,
+      leastWidth: this.scene.data.least_width, background: this.colors.background, pixelRatio: devicePixelRatio,
+    };
+  }
+
+  /** @param {string} id @returns {boolean} */
+  checked(id) {
+    return /** @type {HTMLInputElement} */ (byId(id)).checked;
+  }
+
+  /** @param {{ step: number, steps: number, scale: number, draft: boolean }} how */
+  draw(how) {
+    const { renderer, camera } = this;
+    if (!renderer) return;
+    camera.orthographic = this.checked('orthographic');
+    renderer.draw(camera, this.look(how.draft), how);
+    if (how.step) return;
+    const pixel = 2 * camera.tan * camera.distance / this.canvas.clientHeight;
+    this.bar = showScale(byId('scale'), pixel, this.canvas.clientWidth);
+    this.drawOverlay();
+    if (!how.draft) this.writeLink();
+  }
+
+  /** Colors, legend and what is hidden, as they are now. */
+  recolor() {
+    this.renderer?.setColors(this.colors.update());
+    showLegend(byId('legend'), this.colors, (index, alone) => this.toggle(index, alone));
+    this.loop?.refresh();
+  }
+
+  /** Hides or shows an entry of the legend, or all others. @param {number} index @param {boolean} alone */
+  toggle(index, alone) {
+    const hidden = this.colors.hiddenNow(), all = this.colors.entries().length;
+    if (alone) {
+      const isAlone = hidden.size === all - 1 && !hidden.has(index);
+      hidden.clear();
+      if (!isAlone) for (let other = 0; other < all; other++) if (other !== index) hidden.add(other);
+    } else if (!hidden.delete(index)) hidden.add(index);
+    this.recolor();
+  }
+
+  showBackground() {
+    const { background, system, colors } = this, own = this.scene.data.background;
+    colors.background = background === 'own' ? own : BACKGROUNDS[background === 'dark' || (background === 'system' && system.matches) ? 'dark' : 'light'];
+    document.documentElement.dataset.theme = isDark(colors.background) ? 'dark' : 'light';
+    document.body.style.background = css(colors.background);
+  }
+
+  makePanel() {
+    const { colors, scene } = this;
+    const panel = /** @type {HTMLDetailsElement} */ (byId('panel'));
+    panel.open = innerWidth > 700;
+    const choose = (/** @type {string} */ id, /** @type {string[][]} */ options) =>
+      byId(id).replaceChildren(...options.map(([value, text]) => new Option(text, value)));
+    choose('scheme', colors.schemes.map(({ id, label }) => [id, label]));
+    if (scene.data.background) byId('background').prepend(new Option('of the page', 'own'));
+    const background = /** @type {HTMLSelectElement} */ (byId('background'));
+    background.value = this.background;
+    const on = (/** @type {string} */ id, /** @type {(value: string) => void} */ act) => {
+      const element = /** @type {HTMLInputElement} */ (byId(id));
+      element.oninput = () => act(element.value);
+    };
+    on('scheme', (value) => this.chooseScheme(value));
+    on('colors', (value) => {
+      if (colors.isScale()) colors.map = scene.data.color_maps.find((/** @type {any} */ map) => map.name === value);
+      else colors.palette = scene.data.palettes.find((/** @type {any} */ palette) => palette.name === value);
+      this.recolor();
+    });
+    on('background', (value) => {
+      this.background = /** @type {any} */ (value);
+      this.showBackground();
+      this.recolor();
+    });
+    on('level', () => this.showLevel());
+    for (const id of ['orthographic', 'wireframe', 'occlusion']) on(id, () => this.loop?.refresh());
+    const press = (/** @type {string} */ id, /** @type {() => void} */ act) => { byId(id).onclick = act; };
+    press('fit', () => this.act('f'));
+    press('front', () => this.act('1'));
+    press('side', () => this.act('2'));
+    press('top', () => this.act('3'));
+    press('measure', () => this.act('m'));
+    press('copy', () => this.act('l'));
+    press('picture', () => this.act('p'));
+    press('mesh', () => this.act('s'));
+    if (!(this.renderer instanceof WebGpuRenderer)) /** @type {HTMLElement} */ (byId('occlusion').parentElement).hidden = true;
+    this.chooseScheme(colors.scheme.id);
+    const { recording } = scene.data;
+    if (recording?.times.length > 1) {
+      const frame = /** @type {HTMLInputElement} */ (byId('frame'));
+      frame.max = String(recording.times.length - 1);
+      on('frame', (value) => this.showFrame(+value));
+      press('play', () => this.play());
+    }
+  }
+
+  /** @param {string} id */
+  chooseScheme(id) {
+    const { colors, scene } = this;
+    colors.choose(id);
+    /** @type {HTMLSelectElement} */ (byId('scheme')).value = colors.scheme.id;
+    const isScale = colors.isScale(), all = isScale ? scene.data.color_maps : scene.data.palettes;
+    byId('colors-name').textContent = isScale ? 'Color map' : 'Palette';
+    byId('colors').replaceChildren(...all.map(({ name }) => new Option(name, name)));
+    /** @type {HTMLSelectElement} */ (byId('colors')).value = (isScale ? colors.map : colors.palette).name;
+    byId('time').hidden = !(colors.scheme.recording && scene.data.recording.times.length > 1);
+    if (colors.scheme.recording) this.showFrame(colors.frame);
+    this.recolor();
+  }
+
+  /** @param {number} frame of the recording */
+  showFrame(frame) {
+    const { times } = this.scene.data.recording;
+    this.colors.frame = Math.min(Math.max(frame, 0), Math.max(times.length - 1, 0));
+    /** @type {HTMLInputElement} */ (byId('frame')).value = String(this.colors.frame);
+    byId('frame-name').textContent = times.length ? `${+times[this.colors.frame].toFixed(3)} ms` : '';
+    this.renderer?.setColors(this.colors.update());
+    if (this.playing) this.loop?.change();
+    else this.loop?.refresh();
+  }
+
+  play() {
+    this.playing = !this.playing;
+    byId('play').textContent = this.playing ? '❚❚' : '▶';
+    const next = async () => {
+      while (this.playing) {
+        this.showFrame((this.colors.frame + 1) % this.scene.data.recording.times.length);
+        await new Promise((resolve) => setTimeout(resolve, 60));
+        await this.renderer?.done();
+      }
+      this.loop?.refresh();
+    };
+    if (this.playing) next();
+  }
+
+  showLevel() {
+    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
+    byId('level-name').textContent = level ? `level ${level}` : 'automatic';
+    this.loop?.refresh();
+  }
+
+  /** Listens to input. */
+  watch() {
+    const { camera, canvas } = this;
+    const change = () => this.loop?.change();
+    new ResizeObserver(() => this.resize() && change()).observe(canvas);
+    this.system.onchange = () => {
+      this.showBackground();
+      this.recolor();
+    };
+    addEventListener('hashchange', () => location.hash !== this.link && (this.restore(), this.recolor(), change()));
+    listen(canvas, {
+      turn: (right, up) => { camera.turn(right, up); change(); },
+      pan: (x, y) => { camera.pan(x, y, canvas.clientHeight); change(); },
+      zoom: (factor, x, y) => { camera.zoom(factor, x - canvas.clientWidth / 2, y - canvas.clientHeight / 2, canvas.clientHeight); change(); },
+      hover: (x, y) => this.hover(x, y),
+      leave: () => this.tip(null, 0, 0),
+      click: (x, y) => this.click(x, y),
+      near: (x, y) => this.near(x, y),
+      key: (key) => this.act(key.toLowerCase()),
+    });
+  }
+
+  /** What is drawn at a place of the page. @param {number} x @param {number} y @returns {Promise<import('./scene.js').Place | null>} */
+  async pick(x, y) {
+    const { renderer, camera } = this, ratio = devicePixelRatio;
+    const key = renderer ? await renderer.pick(camera, this.look(false), x * ratio, y * ratio) : -1;
+    return key < 0 || key >= this.scene.keys ? null : this.scene.place(key);
+  }
+
+  /** @param {number} x @param {number} y */
+  async hover(x, y) {
+    this.pointer = [x, y];
+    const now = performance.now();
+    if (this.asking || now - this.hovered < HOVER || (this.loop?.draftAsked ?? true)) return;
+    this.asking = true;
+    this.hovered = now;
+    const place = await this.pick(x, y);
+    this.asking = false;
+    const [px, py] = this.pointer;
+    this.tip(place, px, py);
+    if (px !== x || py !== y) setTimeout(() => this.hover(px, py), HOVER);
+  }
+
+  /** What there is to say of a place. @param {import('./scene.js').Place} place @returns {string} */
+  describe(place) {
+    const { colors, scene } = this, lines = [];
+    if (scene.cells.length > 1) lines.push(scene.cells[place.cell].name);
+    const type = colors.typeOf(place.key);
+    lines.push(place.section < 0 ? type : `${type}, section ${place.section}`);
+    if (place.section >= 0) lines.push(`${place.distance.toFixed(1)} µm along its neurite, radius ${place.radius.toPrecision(2)} µm`);
+    if (colors.scheme.recording) {
+      const share = colors.shareOf(place.key), { title, range: [low, high] } = colors.scale();
+      if (share >= 0) lines.push(`${title}: ${(low + share * (high - low)).toPrecision(4)}`);
+    }
+    return lines.join('\n');
+  }
+
+  /** @param {import('./scene.js').Place | null} place @param {number} x @param {number} y */
+  tip(place, x, y) {
+    const tip = byId('tip');
+    tip.hidden = !place;
+    if (!place) return;
+    tip.textContent = this.describe(place);
+    const { offsetWidth: width, offsetHeight: height } = tip;
+    tip.style.left = `${Math.min(x + 14, innerWidth - width - 8)}px`;
+    tip.style.top = `${y + 18 + height > innerHeight ? y - height - 10 : y + 18}px`;
+  }
+
+  /** @param {number} x @param {number} y */
+  async click(x, y) {
+    const place = await this.pick(x, y);
+    if (!this.measuring) {
+      this.tip(place, x, y);
+      return;
+    }
+    if (!place) return;
+    this.places = this.places.length === 2 ? [place] : [...this.places, place];
+    this.sayMeasured();
+    this.drawOverlay();
+  }
+
+  sayMeasured() {
+    const [a, b] = this.places;
+    if (!b) {
+      this.say(a ? 'Click where it ends.' : 'Click where it begins.');
+      return;
+    }
+    const way = this.scene.way(a, b), straight = `${this.scene.straight(a, b).toFixed(2)} µm straight`;
+    this.say(way === null ? straight : `${straight}, ${way.toFixed(2)} µm along the tree`);
+  }
+
+  /** Goes near to what is at a place. @param {number} x @param {number} y */
+  async near(x, y) {
+    const place = await this.pick(x, y);
+    if (!place) return;
+    this.camera.target = place.center;
+    this.camera.distance = Math.min(this.camera.distance * 0.4, Math.max(60 * place.radius, 40));
+    this.loop?.change();
+  }
+
+  /** Does what a key means. @param {string} key @returns {boolean} whether it means something */
+  act(key) {
+    const { camera } = this;
+    const look = (/** @type {number} */ yaw, /** @type {number} */ pitch) => {
+      [camera.yaw, camera.pitch] = [yaw, pitch];
+      camera.fit(this.aspect());
+      this.loop?.change();
+    };
+    const flip = (/** @type {string} */ id) => byId(id).click();
+    /** @type {Record<string, () => void>} */
+    const actions = {
+      f: () => look(camera.yaw, camera.pitch), 1: () => look(0, 0), 2: () => look(Math.PI / 2, 0), 3: () => look(0, Math.PI / 2 - 1e-4),
+      o: () => flip('orthographic'), w: () => flip('wireframe'), m: () => this.measure(), p: () => this.savePicture(),
+      s: () => this.saveMesh(), l: () => this.copyLink(), ' ': () => this.scene.data.recording && !byId('time').hidden && this.play(),
+      escape: () => this.measuring && this.measure(),
+    };
+    if (!actions[key]) return false;
+    actions[key]();
+    return true;
+  }
+
+  /** Begins or ends measuring. */
+  measure() {
+    this.measuring = !this.measuring;
+    this.places = [];
+    byId('measure').setAttribute('aria-pressed', String(this.measuring));
+    this.canvas.classList.toggle('measuring', this.measuring);
+    if (this.measuring) this.sayMeasured();
+    else this.say('');
+    this.drawOverlay();
+  }
+
+  /** Draws what lies over the picture: what is measured. */
+  drawOverlay() {
+    const { camera, canvas, places } = this;
+    const at = places.map(({ center }) => camera.project(center, canvas.clientWidth, canvas.clientHeight));
+    const shown = /** @type {[number, number][]} */ (at.filter((place) => place));
+    const line = shown.length === 2 ? `<path d="M${shown.join('L')}" stroke="#ff8a00" stroke-width="2"/>` : '';
+    byId('overlay').innerHTML = line + shown.map(([x, y]) => `<circle cx="${x}" cy="${y}" r="4" fill="#ff8a00" stroke="#fff"/>`).join('');
+  }
+
+  async savePicture() {
+    await this.loop?.settled();
+    const { canvas, colors } = this;
+    // WebGPU gives a picture only in the task in which it was drawn.
+    this.renderer?.draw(this.camera, this.look(false), { step: 0, steps: 1, scale: 1 });
+    await this.finePicture();
+    const picture = drawn(canvas, colors, this.bar, devicePixelRatio);
+    picture.toBlob((blob) => blob && save(blob, `${this.fileName()}.png`));
+  }
+
+  /** Draws the whole picture again, so that it can be read. */
+  async finePicture() {
+    const { renderer, loop } = this;
+    if (!renderer || !loop) return;
+    for (let step = 0; step < loop.steps; step++) renderer.draw(this.camera, this.look(false), { step, steps: loop.steps, scale: 1 });
+  }
+
+  async saveMesh() {
+    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)] || SAVED_LEVEL;
+    this.say(`Making the surface at level ${level} …`);
+    try {
+      const made = await surface(/** @type {any} */ (this.renderer), this.scene, level);
+      save(ply(made), `${this.fileName()}.ply`);
+      this.say(`Saved ${(made.triangles.length / 3).toLocaleString('en')} triangles at level ${level}.`);
+    } catch (error) {
+      this.say(/** @type {Error} */ (error).message);
+    }
+  }
+
+  fileName() {
+    return (this.scene.data.title || 'cells').replace(/[^\w.-]+/g, '_').slice(0, 80);
+  }
+
+  async copyLink() {
+    this.writeLink();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      this.say('The address of this view is copied: it works wherever the file is.');
+    } catch {
+      this.say('Copy the page\'s address: it holds this view.');
+    }
+  }
+
+  /** Puts what is shown into the address. */
+  writeLink() {
+    const { camera, colors } = this, hidden = [...colors.hiddenNow()];
+    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
+    const flags = ['orthographic', 'wireframe'].filter((id) => this.checked(id)).map((id) => id[0]).join('');
+    this.link = written({
+      view: [camera.yaw, camera.pitch, camera.distance, ...camera.target].map(short).join(), colors: colors.scheme.id,
+      palette: colors.palette.name, map: colors.map.name, level: level || null, flags: flags + (this.checked('occlusion') ? '' : 'n'),
+      hide: hidden.join(), background: this.background, frame: colors.frame || null, renderer: read(location.hash).renderer ?? null,
+    });
+    if (location.hash !== this.link) location.replace(this.link);
+  }
+
+  /** Shows what the address says. */
+  restore() {
+    const state = read(location.hash), { camera, colors, scene } = this;
+    const view = numbers(state.view, 6);
+    if (view && view[2] > 0) [camera.yaw, camera.pitch, camera.distance, ...camera.target] = /** @type {any} */ (view);
+    const flags = state.flags ?? '';
+    const check = (/** @type {string} */ id, /** @type {boolean} */ on) => { /** @type {HTMLInputElement} */ (byId(id)).checked = on; };
+    check('orthographic', flags.includes('o'));
+    check('wireframe', flags.includes('w'));
+    check('occlusion', !flags.includes('n'));
+    colors.palette = scene.data.palettes.find((/** @type {any} */ p) => p.name === state.palette) ?? colors.palette;
+    colors.map = scene.data.color_maps.find((/** @type {any} */ m) => m.name === state.map) ?? colors.map;
+    if (state.background === 'light' || state.background === 'dark' || state.background === 'system') {
+      this.background = state.background;
+      /** @type {HTMLSelectElement} */ (byId('background')).value = state.background;
+      this.showBackground();
+    }
+    colors.choose(state.colors ?? colors.scheme.id);
+    const hidden = colors.hiddenNow();
+    hidden.clear();
+    for (const index of (state.hide ?? '').split(',')) if (index) hidden.add(+index);
+    colors.frame = Math.min(Math.max(Math.floor(+(state.frame ?? 0)) || 0, 0), Math.max((scene.data.recording?.times.length ?? 1) - 1, 0));
+    /** @type {HTMLInputElement} */ (byId('level')).value = String(Math.max(LEVELS.indexOf(+(state.level ?? 0)), 0));
+    this.showLevel();
+    this.chooseScheme(colors.scheme.id);
+  }
+}
+
+const page = /** @type {any} */ (window).neurotess;
+page.app = new App(page);
+page.ready = page.app.open().catch((/** @type {Error} */ error) => page.app.say(`The cells cannot be shown: ${error.message}`));

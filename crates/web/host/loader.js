@@ -1,0 +1,29 @@
+// Unpacks the host and the cells of the page and starts the host. See page.rs.
+const unpacked = async (id) => {
+  const text = document.getElementById(id).textContent;
+  const values = new Uint8Array(128);
+  [...'{signs}'].forEach((sign, k) => { values[sign.charCodeAt(0)] = k; });
+  const bytes = new Uint8Array(text.length / 5 * 4), view = new DataView(bytes.buffer);
+  for (let k = 0; k < text.length; k += 5) {
+    let number = 0;
+    for (let sign = 0; sign < 5; sign++) number = 85 * number + values[text.charCodeAt(k + sign)];
+    view.setUint32(k / 5 * 4, number);
+  }
+  const stream = new Blob([bytes.subarray(4, 4 + view.getUint32(0))]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
+  const all = await new Response(stream).arrayBuffer();
+  const length = new DataView(all).getUint32(0, true);
+  return [JSON.parse(new TextDecoder().decode(new Uint8Array(all, 4, length))), all, 4 + length];
+};
+(async () => {
+  try {
+    const [shaders, host, start] = await unpacked('host');
+    const [cells, bytes, first] = await unpacked('cells');
+    window.neurotess = { shaders, cells, bytes, first };
+    const script = document.createElement('script');
+    script.type = 'module';
+    script.textContent = new TextDecoder().decode(new Uint8Array(host, start));
+    document.head.append(script);
+  } catch (error) {
+    document.getElementById('message').textContent = `This page cannot be shown: ${error.message}. Use a newer browser.`;
+  }
+})();

@@ -1,0 +1,112 @@
+// Saves: the surface as a PLY file, made of the card's own vertices, and files in general.
+
+import { quads } from './selection.js';
+import { ranges } from './ranges.js';
+
+/** Vertices that the card makes at once, and the most triangles of a file. */
+const TOGETHER = 1 << 18, MOST_TRIANGLES = 40e6;
+/** See even.wgsl. */
+const KIND_STEP = 1 << 21;
+
+/** Finds equal positions. Corners and edges of neighboring patches are computed by the same formulas, so they are equal. */
+class Welder {
+  /** @param {number} most different positions */
+  constructor(most) {
+    this.size = 2 ** Math.ceil(Math.log2(2 * most + 16));
+    this.slots = new Int32Array(this.size).fill(-1);
+    this.bits = new Uint32Array(4 * most);
+    this.count = 0;
+  }
+
+  /** @param {number} x bits @param {number} y @param {number} z @param {number} cell @param {number} next number of the vertex if it is new @returns {number} */
+  find(x, y, z, cell, next) {
+    let hash = Math.imul(x, 0x9e3779b1) ^ Math.imul(y, 0x85ebca6b) ^ Math.imul(z, 0xc2b2ae35) ^ cell;
+    hash ^= hash >>> 15;
+    for (let at = hash & (this.size - 1); ; at = (at + 1) & (this.size - 1)) {
+      const known = this.slots[at];
+      if (known < 0) {
+        this.slots[at] = this.count;
+        this.bits.set([x, y, z, next], 4 * this.count);
+        this.count++;
+        return next;
+      }
+      const b = 4 * known;
+      if (this.bits[b] === x && this.bits[b + 1] === y && this.bits[b + 2] === z) return this.bits[b + 3];
+    }
+  }
+}
+
+/**
+ * The surface of all cells at a level: closed, as files of the program are.
+ * @param {import('./webgpu.js').WebGpuRenderer | import('./webgl.js').WebGlRenderer} renderer
+ * @param {import('./scene.js').Scene} scene @param {number} level
+ * @returns {Promise<{ vertices: Float32Array, sections: Int32Array, triangles: Uint32Array }>} six numbers a vertex
+ */
+export async function surface(renderer, scene, level) {
+  const { HIGHEST_LEVEL, PATCH_CAP, PATCH_SOMA } = scene.numbers;
+  if (2 * level ** 2 * scene.slots > MOST_TRIANGLES) throw new Error(`level ${level} is too fine for a file of this page: choose a lower one`);
+  const vertices = [], sections = [], triangles = [];
+  let count = 0, cell = -1, welder = new Welder(1);
+  for (const part of scene.parts) {
+    if (part.cell !== cell) {
+      cell = part.cell;
+      const slots = scene.parts.filter((other) => other.cell === cell).reduce((sum, other) => sum + other.slots, 0);
+      welder = new Welder(slots * 4 * (2 * level + 1));
+    }
+    for (const range of ranges(part, level, HIGHEST_LEVEL, TOGETHER)) {
+      const { first, slots, columns } = range, n = columns - 1;
+      const made = await renderer.vertices(part, level, columns, first, slots), bits = new Uint32Array(made.buffer);
+      const number = new Uint32Array(columns ** 2);
+      for (let patch = 0; patch < slots; patch++) {
+        const start = 8 * patch * columns ** 2;
+        if (made[start + 7] === 0) continue;
+        const kind = Math.floor((made[start + 7] - 1) / KIND_STEP);
+        for (let k = 0; k < columns ** 2; k++) {
+          const at = start + 8 * k, i = k % columns, j = Math.floor(k / columns);
+          const inside = i > 0 && i < n && j > 0 && j < n;
+          number[k] = inside ? count : welder.find(bits[at], bits[at + 1], bits[at + 2], cell, count);
+          if (number[k] < count) continue;
+          count++;
+          vertices.push(...scene.inWorld(cell, [made[at], made[at + 1], made[at + 2]]), made[at + 4], made[at + 5], made[at + 6]);
+          const section = scene.section[(made[at + 7] - 1) % KIND_STEP];
+          sections.push(section === 0xffff ? -1 : section);
+        }
+        const all = quads(n, n, kind === PATCH_CAP || kind === PATCH_SOMA, (i, j) => number[j * columns + i]);
+        for (let k = 0; k < all.length; k += 3) {
+          const [a, b, c] = [all[k], all[k + 1], all[k + 2]];
+          // Triangles that lie in an edge are none.
+          if (a !== b && b !== c && c !== a) triangles.push(a, b, c);
+        }
+      }
+    }
+  }
+  return { vertices: Float32Array.from(vertices), sections: Int32Array.from(sections), triangles: Uint32Array.from(triangles) };
+}
+
+/** @param {{ vertices: Float32Array, sections: Int32Array, triangles: Uint32Array }} surface @returns {Blob} a binary PLY file */
+export function ply({ vertices, sections, triangles }) {
+  const count = sections.length, faces = triangles.length / 3;
+  const properties = ['x', 'y', 'z', 'nx', 'ny', 'nz'].map((name) => `property float ${name}\n`).join('');
+  const header = `ply\nformat binary_little_endian 1.0\ncomment made by a page of neurotess, lengths in micrometers\nelement vertex ${count}\n`
+    + `${properties}property int section\nelement face ${faces}\nproperty list uchar int vertex_indices\nend_header\n`;
+  const body = new DataView(new ArrayBuffer(28 * count + 13 * faces));
+  for (let v = 0; v < count; v++) {
+    for (let k = 0; k < 6; k++) body.setFloat32(28 * v + 4 * k, vertices[6 * v + k], true);
+    body.setInt32(28 * v + 24, sections[v], true);
+  }
+  for (let f = 0; f < faces; f++) {
+    const at = 28 * count + 13 * f;
+    body.setUint8(at, 3);
+    for (let k = 0; k < 3; k++) body.setUint32(at + 1 + 4 * k, triangles[3 * f + k], true);
+  }
+  return new Blob([header, body], { type: 'application/octet-stream' });
+}
+
+/** Hands a file to the reader. @param {Blob} blob @param {string} name */
+export function save(blob, name) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}

@@ -1,0 +1,108 @@
+//! One script of the host's modules, so that a page is one file.
+//!
+//! A module becomes a function that returns what it exports, and an import takes names out of that. Why not a
+//! bundler: `cargo install` has none, and these modules need no more than forty lines.
+
+use crate::minified;
+
+/// A module of the host.
+macro_rules! module {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../host/", $name, ".js")))
+    };
+}
+
+/// The modules, each after those that it imports from.
+const MODULES: [(&str, &str); 18] = [
+    module!("vectors"),
+    module!("bytes"),
+    module!("scene"),
+    module!("camera"),
+    module!("colors"),
+    module!("shaders"),
+    module!("selection"),
+    module!("finishing"),
+    module!("ranges"),
+    module!("webgpu"),
+    module!("webgl"),
+    module!("saving"),
+    module!("link"),
+    module!("legend"),
+    module!("picture"),
+    module!("loop"),
+    module!("pointer"),
+    module!("app"),
+];
+
+/// The script of all modules.
+pub(crate) fn host_script() -> String {
+    MODULES
+        .iter()
+        .map(|(name, text)| module(name, text))
+        .collect()
+}
+
+/// A module as a function.
+fn module(name: &str, text: &str) -> String {
+    let mut exports = Vec::new();
+    let mut body = String::new();
+    let text = minified::javascript(text);
+    for line in text.lines() {
+        if let Some(import) = line.strip_prefix("import") {
+            body.push_str(&imported(import));
+        } else if let Some(export) = line.strip_prefix("export ") {
+            exports.push(exported(export));
+            body.push_str(export);
+        } else {
+            body.push_str(line);
+        }
+        body.push('\n');
+    }
+    let exports = exports.join(",");
+    format!("const module_{name}=(()=>{{\n{body}return{{{exports}}};\n}})();\n")
+}
+
+/// `{a,b} from'./x.js';` as a statement.
+fn imported(import: &str) -> String {
+    let parts = import.strip_suffix(".js';");
+    let (names, from) = parts
+        .and_then(|parts| parts.split_once("from './"))
+        .expect("an import of the host is one line, of names in one of its modules");
+    format!("const{names}=module_{from};")
+}
+
+/// The name that a declaration gives.
+fn exported(declaration: &str) -> &str {
+    let words = declaration.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let name = words
+        .filter(|word| !word.is_empty() && !["async", "function", "class", "const"].contains(word))
+        .next();
+    name.expect("an export of the host is a declaration")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modules_are_functions() {
+        let text = "// x\nimport { a, b } from './other.js';\nexport async function f() {\n  a();\n}\nexport const g = b;\n";
+        assert_eq!(
+            module("one", text),
+            "const module_one=(()=>{\nconst{a,b}=module_other;\nasync function f(){\na();\n}\n\
+             const g=b;\nreturn{f,g};\n})();\n"
+        );
+    }
+
+    #[test]
+    fn modules_come_after_those_that_they_import() {
+        for (place, (name, text)) in MODULES.iter().enumerate() {
+            for line in text.lines().filter(|line| line.starts_with("import ")) {
+                let from = MODULES
+                    .iter()
+                    .position(|(other, _)| line.contains(&format!("'./{other}.js'")));
+                assert!(from.is_some_and(|from| from < place), "{name}: {line}");
+            }
+        }
+    }
+}

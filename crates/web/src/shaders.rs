@@ -1,0 +1,136 @@
+//! The shaders of pages: those of the renderer as they are, a few of our own, and GLSL for WebGL.
+
+use std::collections::BTreeMap;
+
+use neurotess_refine::wgsl::{Shader, WgslFile};
+use neurotess_render::host;
+use serde::Serialize;
+
+use crate::error::WebError;
+use crate::glsl::{GlslProgram, glsl};
+use crate::layout::{Layout, layout};
+use crate::minified::wgsl;
+use crate::texture_source::packed_in_texture;
+
+/// A file of this crate.
+macro_rules! file {
+    ($name:literal) => {
+        WgslFile {
+            name: $name,
+            text: include_str!(concat!("../shaders/", $name)),
+        }
+    };
+}
+
+const EVEN: WgslFile = file!("even.wgsl");
+const EXPAND: WgslFile = file!("expand.wgsl");
+const CAPTURED: WgslFile = file!("captured.wgsl");
+const NOTHING: WgslFile = file!("nothing.wgsl");
+const KEPT: WgslFile = file!("kept.wgsl");
+const PRESENTED: WgslFile = file!("presented.wgsl");
+
+/// All that the host needs to make pipelines.
+#[derive(Debug, Serialize)]
+pub(crate) struct PageShaders {
+    /// Pieces of WGSL that modules are joined of: most modules share most of them.
+    pieces: Vec<String>,
+    /// By name of the module: indices of its pieces.
+    modules: BTreeMap<String, Vec<usize>>,
+    /// Entry points of the selection: module, name, number of buffers in group 2.
+    selection: Vec<(String, &'static str, u32)>,
+    /// Uniforms, by name of the struct.
+    layouts: BTreeMap<&'static str, Layout>,
+    numbers: BTreeMap<String, f64>,
+    grid_sizes: &'static [u32],
+    key_light: [f32; 3],
+    glsl: BTreeMap<&'static str, GlslProgram>,
+}
+
+/// Structs of uniforms and buffers that the host writes, each with a module that has it.
+const LAYOUTS: [(&str, &str); 6] = [
+    ("Frame", "classify"),
+    ("Placed", "classify"),
+    ("Shade", "draw2"),
+    ("Finish", "finish"),
+    ("Even", "expand"),
+    ("Presented", "present"),
+];
+
+/// All WGSL of a page by the name of the module.
+pub fn modules() -> Vec<(String, Shader)> {
+    let named = |shader: Shader| (shader.name.trim_end_matches(".wgsl").to_owned(), shader);
+    let mut all: Vec<(String, Shader)> = host::selection_shaders().into_iter().map(named).collect();
+    let kinds = [
+        ("draw", host::drawing_shaders()),
+        ("id", host::id_shaders()),
+    ];
+    for (name, shaders) in kinds {
+        let numbered = shaders.into_iter().enumerate();
+        all.extend(numbered.map(|(kind, shader)| (format!("{name}{kind}"), shader)));
+    }
+    all.push(("finish".to_owned(), host::finishing_shader()));
+    all.push(named(host::composed("expand", &[EVEN, EXPAND])));
+    all.push(named(host::composed("present", &[PRESENTED])));
+    all
+}
+
+/// GLSL ES 3.00 of the two programs of WebGL, from WGSL: vertices at one level, and their drawing.
+fn programs() -> Result<[(&'static str, GlslProgram); 3], WebError> {
+    let capture = host::composed("captured", &[EVEN, CAPTURED]);
+    let text = packed_in_texture(&capture.text);
+    let kept = host::composed("kept", &[KEPT]).text;
+    Ok([
+        (
+            "capture",
+            glsl("captured", [&text, NOTHING.text], ["capture", "nothing"])?,
+        ),
+        ("kept", glsl("kept", [&kept; 2], ["vertex", "fragment"])?),
+        ("ids", glsl("kept", [&kept; 2], ["vertex", "fragment_id"])?),
+    ])
+}
+
+impl PageShaders {
+    pub(crate) fn new() -> Result<Self, WebError> {
+        let all = modules();
+        let mut pieces = Vec::new();
+        let mut known: BTreeMap<String, usize> = BTreeMap::new();
+        let mut piece = |text: String| {
+            *known.entry(text.clone()).or_insert_with(|| {
+                pieces.push(text);
+                pieces.len() - 1
+            })
+        };
+        let mut joined = BTreeMap::new();
+        for (name, shader) in &all {
+            let texts = shader.pieces().into_iter().map(|text| wgsl(&text));
+            let texts = texts.filter(|text| !text.is_empty());
+            joined.insert(name.clone(), texts.map(&mut piece).collect());
+        }
+        let mut layouts = BTreeMap::new();
+        for (of, module) in LAYOUTS {
+            let shader = all.iter().find(|(name, _)| name == module);
+            let (_, shader) = shader.expect("modules() names it");
+            layouts.insert(of, layout(shader, of)?);
+        }
+        let mut programs = BTreeMap::from(programs()?);
+        let kept = host::composed("kept", &[KEPT]);
+        layouts.insert("Kept", layout(&kept, "Kept")?);
+        // Both have the same vertex stage.
+        if let Some(ids) = programs.get_mut("ids") {
+            ids.vertex.clear();
+        }
+        let entries = host::selection_entries().iter();
+        let entries =
+            entries.map(|&(module, entry, buffers)| (all[module].0.clone(), entry, buffers));
+        Ok(Self {
+            pieces,
+            modules: joined,
+            selection: entries.collect(),
+            layouts,
+            numbers: host::numbers().into_iter().collect(),
+            grid_sizes: host::grid_sizes(),
+            key_light: host::key_light(),
+            glsl: programs,
+        })
+    }
+}

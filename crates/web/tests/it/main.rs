@@ -1,0 +1,3 @@
+//! Pages: what is in them.
+
+neurotess_testing::main!();
