@@ -65,7 +65,7 @@ export class App {
     this.loop = new Loop((how) => this.draw(how), () => /** @type {any} */ (this.renderer).done(), steps);
     this.say(said);
     this.makePanel();
-    this.camera.fit(this.aspect());
+    this.camera.fit(this.aspect(), this.covered());
     this.restore();
     this.recolor();
     this.watch();
@@ -85,6 +85,13 @@ export class App {
 
   aspect() {
     return this.canvas.width / this.canvas.height;
+  }
+
+  /** The share of the width that the panel covers; none if little would be left. */
+  covered() {
+    const panel = /** @type {HTMLDetailsElement} */ (byId('panel'));
+    const share = panel.open ? (panel.offsetWidth + 12) / this.canvas.clientWidth : 0;
+    return share < 0.36 ? share : 0;
   }
 
   resize() {
@@ -152,7 +159,7 @@ export class App {
   makePanel() {
     const { colors, scene } = this;
     const panel = /** @type {HTMLDetailsElement} */ (byId('panel'));
-    panel.open = innerWidth > 700;
+    panel.open = innerWidth > 760;
     const choose = (/** @type {string} */ id, /** @type {string[][]} */ options) =>
       byId(id).replaceChildren(...options.map(([value, text]) => new Option(text, value)));
     choose('scheme', colors.schemes.map(({ id, label }) => [id, label]));
@@ -346,7 +353,7 @@ export class App {
     const { camera } = this;
     const look = (/** @type {number} */ yaw, /** @type {number} */ pitch) => {
       [camera.yaw, camera.pitch] = [yaw, pitch];
-      camera.fit(this.aspect());
+      camera.fit(this.aspect(), this.covered());
       this.loop?.change();
     };
     const flip = (/** @type {string} */ id) => byId(id).click();
@@ -385,15 +392,14 @@ export class App {
   async savePicture() {
     await this.loop?.settled();
     const { canvas, colors } = this;
-    // WebGPU gives a picture only in the task in which it was drawn.
-    this.renderer?.draw(this.camera, this.look(false), { step: 0, steps: 1, scale: 1 });
-    await this.finePicture();
+    // A canvas of WebGPU can be read only in the task in which it was drawn.
+    this.drawWhole();
     const picture = drawn(canvas, colors, this.bar, devicePixelRatio);
     picture.toBlob((blob) => blob && save(blob, `${this.fileName()}.png`));
   }
 
-  /** Draws the whole picture again, so that it can be read. */
-  async finePicture() {
+  /** Draws all steps of the picture again. */
+  drawWhole() {
     const { renderer, loop } = this;
     if (!renderer || !loop) return;
     for (let step = 0; step < loop.steps; step++) renderer.draw(this.camera, this.look(false), { step, steps: loop.steps, scale: 1 });
@@ -403,12 +409,18 @@ export class App {
     const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)] || SAVED_LEVEL;
     this.say(`Making the surface at level ${level} …`);
     try {
-      const made = await surface(/** @type {any} */ (this.renderer), this.scene, level);
-      save(ply(made), `${this.fileName()}.ply`);
-      this.say(`Saved ${(made.triangles.length / 3).toLocaleString('en')} triangles at level ${level}.`);
+      const { file, triangles } = await this.mesh(level);
+      save(file, `${this.fileName()}.ply`);
+      this.say(`Saved ${triangles.toLocaleString('en')} triangles at level ${level}.`);
     } catch (error) {
       this.say(/** @type {Error} */ (error).message);
     }
+  }
+
+  /** The surface as a file. @param {number} level @returns {Promise<{ file: Blob, triangles: number }>} */
+  async mesh(level) {
+    const made = await surface(/** @type {any} */ (this.renderer), this.scene, level);
+    return { file: ply(made), triangles: made.triangles.length / 3 };
   }
 
   fileName() {

@@ -75,24 +75,27 @@ export class Camera {
 
   /**
    * Moves the target and the distance so that these spheres fill the picture.
-   * @param {number} aspect @param {{ center: Vector, radius: number }[]} [spheres]
+   * @param {number} aspect @param {number} covered share of the width, from the right, that something else covers
+   * @param {{ center: Vector, radius: number }[]} [spheres]
    */
-  fit(aspect, spheres = this.spheres) {
+  fit(aspect, covered, spheres = this.spheres) {
     if (!spheres.length) return;
     const { right, up, backward } = this.axes();
-    const free = 1 - 2 * MARGIN, tans = [this.tan * aspect * free, this.tan * free];
+    const free = 1 - 2 * MARGIN, across = this.tan * aspect;
     // Where the eye must be along each axis, and how far, so that the planes on both sides touch the spheres.
-    const touch = (/** @type {Vector} */ axis, /** @type {number} */ tan) => {
-      const slant = Math.hypot(tan, 1);
+    const touch = (/** @type {Vector} */ axis, /** @type {number} */ lowTan, /** @type {number} */ highTan) => {
       let low = 1e30, high = -1e30;
       for (const { center, radius } of spheres) {
         const v = dot(center, axis), z = dot(center, backward);
-        high = Math.max(high, v + tan * z + radius * slant);
-        low = Math.min(low, v - tan * z - radius * slant);
+        high = Math.max(high, v + highTan * z + radius * Math.hypot(highTan, 1));
+        low = Math.min(low, v - lowTan * z - radius * Math.hypot(lowTan, 1));
       }
-      return [(low + high) / 2, (high - low) / (2 * tan)];
+      return [(low * highTan + high * lowTan) / (lowTan + highTan), (high - low) / (lowTan + highTan)];
     };
-    const [x, depthX] = touch(right, tans[0]), [y, depthY] = touch(up, tans[1]);
+    const rightTan = across * (free - 2 * covered);
+    const [x0, depthX] = touch(right, across * free, rightTan), [y, depthY] = touch(up, this.tan * free, this.tan * free);
+    // If the height needs a larger distance, the spheres are centered in what is not covered.
+    const x = x0 + Math.max(depthY - depthX, 0) * (across * free - rightTan) / 2;
     const depths = spheres.map(({ center }) => dot(center, backward));
     const nearest = Math.max(...spheres.map(({ radius }, k) => depths[k] + radius));
     const middle = depths.reduce((sum, z) => sum + z, 0) / depths.length;

@@ -11,6 +11,8 @@
 const CATEGORY = 1 << 15;
 /** Of points without a value. */
 const NOTHING = /** @type {Rgb} */ ([160, 160, 160]);
+/** Ends of color maps with less contrast to the background (WCAG 2.2) are left out. */
+const LEAST_CONTRAST = 1.4;
 /** Types from here on take the last colors in turn. */
 const CUSTOM = 5;
 
@@ -20,11 +22,14 @@ export function linear(byte) {
   return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
 }
 
-/** @param {Rgb} color @returns {boolean} whether light things stand out better against it */
-export function isDark(color) {
+/** @param {Rgb} color @returns {number} relative luminance, 0 to 1 */
+function luminance(color) {
   const [r, g, b] = color.map(linear);
-  return 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.2;
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
+
+/** @param {Rgb} color @returns {boolean} whether light things stand out better against it */
+export const isDark = (color) => luminance(color) < 0.2;
 
 /** @param {Rgb} color @returns {string} */
 export const css = (color) => `rgb(${color.join()})`;
@@ -141,10 +146,20 @@ export class Colors {
     return Math.min(Math.max((value - low) / (high - low), 0), 1);
   }
 
-  /** @param {number} share 0 to 1 @returns {Rgb} */
+  /** @param {number} share 0 to 1 @returns {Rgb} of the part of the map that stands out against the background */
   ofShare(share) {
-    const { colors } = this.map, place = share * (colors.length - 1), low = Math.min(Math.floor(place), colors.length - 2);
+    const { colors } = this.map, [first, last] = this.visible(), place = first + share * (last - first), low = Math.min(Math.floor(place), colors.length - 2);
     return colors[low].map((/** @type {number} */ c, /** @type {number} */ k) => Math.round(c + (colors[low + 1][k] - c) * (place - low)));
+  }
+
+  /** First and last color of the map that one can tell from the background. @returns {[number, number]} */
+  visible() {
+    const { colors } = this.map, behind = luminance(this.background) + 0.05;
+    const seen = colors.map((/** @type {Rgb} */ color) => {
+      const own = luminance(color) + 0.05;
+      return Math.max(own, behind) / Math.min(own, behind) >= LEAST_CONTRAST;
+    });
+    return [Math.max(seen.indexOf(true), 0), Math.max(seen.lastIndexOf(true), 1)];
   }
 
   /** Writes the table anew. @returns {Float32Array} */

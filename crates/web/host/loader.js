@@ -18,12 +18,16 @@ const unpacked = async (id) => {
   try {
     const [shaders, host, start] = await unpacked('host');
     const [cells, bytes, first] = await unpacked('cells');
+    const style = document.createElement('style');
+    style.textContent = shaders.style;
+    document.head.append(style);
+    document.body.innerHTML = shaders.body.replaceAll('{title}', document.querySelector('title').innerHTML.replaceAll('"', '&quot;'));
     window.neurotess = { shaders, cells, bytes, first };
     const script = document.createElement('script');
     script.type = 'module';
     script.textContent = new TextDecoder().decode(new Uint8Array(host, start));
     document.head.append(script);
   } catch (error) {
-    document.getElementById('message').textContent = `This page cannot be shown: ${error.message}. Use a newer browser.`;
+    document.body.textContent = `This page cannot be shown: ${error.message}. Use a newer browser.`;
   }
 })();

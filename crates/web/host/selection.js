@@ -7,6 +7,8 @@ import { along, dot, minus } from './vectors.js';
 /** Bytes of the arguments of a draw. */
 export const DRAW_BYTES = 20;
 const QUEUES = 3;
+/** Passes that have nothing to do at level 1: in software they take most of the time to compile. */
+const ONLY_REFINED = ['level_rings', 'decide_tubes', 'decide_singles', 'scatter'];
 
 /**
  * The grids that patches are drawn in, with the indices that draw them.
@@ -117,6 +119,10 @@ export class Selection {
       flat: make('flat patches', FLAT_INDICES * room, STORAGE | INDEX),
       draws: make('draws', DRAW_BYTES / 4 * (1 + BUCKETS), STORAGE | INDIRECT | COPY_SRC),
     };
+    /** @type {Record<string, GPUShaderModule>} */
+    this.modules = {};
+    /** @type {Record<string, GPUComputePipeline>} */
+    this.pipelines = {};
     this.makeGroups();
   }
 
@@ -162,17 +168,14 @@ export class Selection {
     ];
   }
 
-  /** Compiles the passes. */
-  async compile() {
+  /** Compiles passes: those that level 1 needs, or the others. @param {boolean} first */
+  async compile(first) {
     const { device, shaders } = this;
-    /** @type {Record<string, GPUShaderModule>} */
-    const modules = {};
-    /** @type {Record<string, GPUComputePipeline>} */
-    this.pipelines = {};
-    await Promise.all(shaders.selection.map(async (/** @type {[string, string, number]} */ [name, entryPoint, count]) => {
-      const module = modules[name] ??= device.createShaderModule({ label: name, code: wgsl(shaders, name) });
+    const wanted = shaders.selection.filter((/** @type {[string, string, number]} */ [, entry]) => first === !ONLY_REFINED.includes(entry));
+    await Promise.all(wanted.map(async (/** @type {[string, string, number]} */ [name, entryPoint, count]) => {
+      const module = this.modules[name] ??= device.createShaderModule({ label: name, code: wgsl(shaders, name) });
       const layout = device.createPipelineLayout({ bindGroupLayouts: [this.layouts.page, this.layouts.clusters, this.layouts.written[count - 1]] });
-      /** @type {any} */ (this.pipelines)[entryPoint] = await device.createComputePipelineAsync({ label: entryPoint, layout, compute: { module, entryPoint } });
+      this.pipelines[entryPoint] = await device.createComputePipelineAsync({ label: entryPoint, layout, compute: { module, entryPoint } });
     }));
   }
 
@@ -206,7 +209,7 @@ export class Selection {
     device.queue.writeBuffer(b.placed, 0, placed);
   }
 
-  /** Encodes the passes. @param {GPUCommandEncoder} encoder */
+  /** Encodes the passes that are compiled. @param {GPUCommandEncoder} encoder */
   encode(encoder) {
     const { buffers: b, groups } = this;
     encoder.clearBuffer(b.marks);
@@ -216,7 +219,8 @@ export class Selection {
     pass.setBindGroup(0, groups.page);
     pass.setBindGroup(1, groups.clusters);
     for (const [entry, group, count, queue] of this.steps) {
-      pass.setPipeline(/** @type {any} */ (this.pipelines)[entry]);
+      if (!this.pipelines[entry]) continue;
+      pass.setPipeline(this.pipelines[entry]);
       pass.setBindGroup(2, group);
       if (typeof count === 'number') pass.dispatchWorkgroups(count);
       else pass.dispatchWorkgroupsIndirect(count, 12 * /** @type {number} */ (queue));

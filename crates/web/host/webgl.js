@@ -235,8 +235,12 @@ export class WebGlRenderer {
 
   async complete() {}
 
+  /** When everything that was asked for is done. @returns {Promise<void>} */
   async done() {
-    this.gl.finish();
+    const { gl } = this, fence = /** @type {WebGLSync} */ (gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0));
+    gl.flush();
+    while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) await new Promise((resolve) => setTimeout(resolve, 4));
+    gl.deleteSync(fence);
   }
 
   /**
@@ -253,8 +257,18 @@ export class WebGlRenderer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.drawAll(this.programs.ids, view, look, canvas.width / canvas.height);
     const ids = new Uint8Array(4 * PICKED * PICKED);
-    gl.readPixels(0, 0, PICKED, PICKED, gl.RGBA, gl.UNSIGNED_BYTE, ids);
+    // By way of a buffer: what is read at once makes browsers wait, and say so.
+    const copy = gl.createBuffer();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, copy);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, ids.length, gl.STREAM_READ);
+    gl.readPixels(0, 0, PICKED, PICKED, gl.RGBA, gl.UNSIGNED_BYTE, 0);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    await this.done();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, copy);
+    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, ids);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    gl.deleteBuffer(copy);
     return nearest((column, row) => {
       const at = 4 * (row * PICKED + column);
       return (ids[at] | (ids[at + 1] << 8) | (ids[at + 2] << 16)) - 1;
@@ -292,6 +306,7 @@ export class WebGlRenderer {
     this.level = level;
     this.capture({ part, first, slots, columns, round: false, buffer, made: false });
     this.level = before;
+    await this.done();
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.getBufferSubData(gl.ARRAY_BUFFER, 0, read);
     gl.deleteBuffer(buffer);

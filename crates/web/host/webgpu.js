@@ -67,25 +67,38 @@ export class WebGpuRenderer {
     this.selected = '';
   }
 
+  /** Compiles what a picture at level 1 needs, which is drawn until all else is there. */
   async compile() {
-    const { device, shaders } = this, { SAMPLES } = shaders.numbers;
-    const pipelines = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, SAMPLES);
-    await Promise.all([this.selection.compile(), this.finisher.compile()]);
-    const kinds = await pipelines;
-    // All draws, most of them empty, encoded once.
-    const bundle = device.createRenderBundleEncoder({ colorFormats: FORMATS, depthStencilFormat: DEPTH, sampleCount: SAMPLES });
-    this.encodeDraws(bundle, kinds);
-    this.bundle = bundle.finish();
+    const flat = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, this.shaders.numbers.SAMPLES, [0]);
+    await Promise.all([this.selection.compile(true), this.finisher.compile()]);
+    this.flat = await flat;
+    this.bundle = this.bundled(this.flat);
+  }
+
+  /** Compiles all else. */
+  async complete() {
+    const others = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, this.shaders.numbers.SAMPLES, [1, 2]);
+    await Promise.all([this.selection.compile(false), this.finisher.compileOcclusion()]);
+    this.bundle = this.bundled([.../** @type {GPURenderPipeline[]} */ (this.flat), ...await others]);
+    this.refines = true;
+    this.selected = '';
+  }
+
+  /** All draws, most of them empty, encoded once. @param {GPURenderPipeline[]} pipelines by kind @returns {GPURenderBundle} */
+  bundled(pipelines) {
+    const bundle = this.device.createRenderBundleEncoder({ colorFormats: FORMATS, depthStencilFormat: DEPTH, sampleCount: this.shaders.numbers.SAMPLES });
+    this.encodeDraws(bundle, pipelines);
+    return bundle.finish();
   }
 
   /**
    * @param {string} name of the modules @param {[string, string]} entries @param {GPUTextureFormat[]} formats
-   * @param {number} count samples @returns {Promise<GPURenderPipeline[]>}
+   * @param {number} count samples @param {number[]} kinds @returns {Promise<GPURenderPipeline[]>}
    */
-  pipelines(name, [vertex, fragment], formats, count) {
+  pipelines(name, [vertex, fragment], formats, count, kinds) {
     const { device, shaders } = this;
     const layout = device.createPipelineLayout({ bindGroupLayouts: [this.selection.layouts.drawing, this.shadeLayout] });
-    return Promise.all([0, 1, 2].map((kind) => {
+    return Promise.all(kinds.map((kind) => {
       const module = device.createShaderModule({ label: name + kind, code: wgsl(shaders, name + kind) });
       return device.createRenderPipelineAsync({ label: name + kind, layout, vertex: { module, entryPoint: vertex },
         fragment: { module, entryPoint: fragment, targets: formats.map((format) => ({ format })) },
@@ -99,7 +112,7 @@ export class WebGpuRenderer {
     const { draws } = this.selection.buffers;
     pass.setBindGroup(0, this.selection.groups.drawing);
     pass.setBindGroup(1, this.shadeGroup);
-    this.selection.draws().forEach(([indices, first, end], kind) => {
+    this.selection.draws().slice(0, pipelines.length).forEach(([indices, first, end], kind) => {
       pass.setPipeline(pipelines[kind]);
       pass.setIndexBuffer(indices, 'uint32');
       for (let draw = first; draw < end; draw++) pass.drawIndexedIndirect(draws, DRAW_BYTES * draw);
@@ -146,7 +159,7 @@ export class WebGpuRenderer {
   select(encoder, view, size, look) {
     const key = JSON.stringify([view, size, look.lod, look.wireframe]);
     if (key === this.selected) return;
-    this.selection.write(view, size, look.lod, look.wireframe);
+    this.selection.write(view, size, this.refines ? look.lod : { level: 1 }, look.wireframe);
     this.selection.encode(encoder);
     this.selected = key;
   }
@@ -176,12 +189,6 @@ export class WebGpuRenderer {
     device.queue.submit([encoder.finish()]);
   }
 
-  /** Compiles what is not needed for the first picture. */
-  async complete() {
-    await this.finisher.compileOcclusion();
-    this.idPipelines = await this.pipelines('id', ['vertex_id', 'fragment_id'], ['rg32uint'], 1);
-  }
-
   /** When everything that was asked for is done. @returns {Promise<void>} */
   async done() {
     await this.device.queue.onSubmittedWorkDone();
@@ -194,7 +201,9 @@ export class WebGpuRenderer {
    */
   async pick(camera, look, x, y) {
     const { device, canvas } = this, { GUARD } = this.shaders.numbers;
-    if (!this.idPipelines) return -1;
+    if (!this.refines) return -1;
+    this.ids ??= this.pipelines('id', ['vertex_id', 'fragment_id'], ['rg32uint'], 1, [0, 1, 2]);
+    const pipelines = await this.ids;
     const size = /** @type {[number, number]} */ ([canvas.width, canvas.height]), view = camera.view(size[1]);
     const tile = /** @type {[number, number, number, number]} */ ([Math.floor(x) - (PICKED >> 1), Math.floor(y) - (PICKED >> 1), PICKED, PICKED]);
     this.writeShade(view, look, size, tile, 1, 0);
@@ -208,7 +217,7 @@ export class WebGpuRenderer {
       colorAttachments: [{ view: texture.createView(), loadOp: 'clear', storeOp: 'store', clearValue: [0, 0, 0, 0] }],
       depthStencilAttachment: { view: depth.createView(), depthClearValue: 0, depthLoadOp: 'clear', depthStoreOp: 'discard' } });
     pass.setViewport(-GUARD, -GUARD, PICKED + 2 * GUARD, PICKED + 2 * GUARD, 0, 1);
-    this.encodeDraws(pass, this.idPipelines);
+    this.encodeDraws(pass, pipelines);
     pass.end();
     encoder.copyTextureToBuffer({ texture }, { buffer: read, bytesPerRow: 256 }, [PICKED, PICKED]);
     device.queue.submit([encoder.finish()]);

@@ -64,14 +64,14 @@ fn vertex(@location(0) place: vec4<f32>, @location(1) around: vec4<f32>) -> Vary
         relative += normal * max(widened - place.w, 0.0);
     }
     out.position = shade.clip_from_relative * vec4(relative, 1.0);
-    let is_shown = around.w > 0.0 && color.a > 0.0;
-    if !is_shown {
-        // Beyond the far plane.
+    if around.w == 0.0 {
+        // There is no patch: beyond the far plane.
         out.position = vec4(0.0, 0.0, 2.0, 1.0);
     }
-    out.normal = vec4(normal, select(0.0, 1.0, is_shown));
+    // As in shade.wgsl: the border of what is hidden is at the last vertex that is not.
+    out.normal = vec4(normal, select(-1000.0, 1.0, color.a > 0.0));
     out.relative = vec4(relative, thin);
-    out.color = vec4(mix(color.rgb, shade.ink.rgb, shade.ink.a), f32(key));
+    out.color = vec4(mix(color.rgb, shade.ink.rgb, shade.ink.a * (1.0 - thin)), f32(key));
     return out;
 }
 
@@ -83,7 +83,7 @@ fn encoded(linear: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    if in.normal.w < 0.5 {
+    if in.normal.w <= 0.0 {
         discard;
     }
     if shade.ink.a > 0.0 {
@@ -98,7 +98,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 // The color key plus 1 in three bytes.
 @fragment
 fn fragment_id(in: Varying) -> @location(0) vec4<f32> {
-    if in.normal.w < 0.5 {
+    if in.normal.w <= 0.0 {
         discard;
     }
     let id = u32(in.color.w + 0.5) + 1u;

@@ -60,6 +60,15 @@ struct PageData {
     color_maps: Vec<ColorMapData>,
 }
 
+/// The same in all pages.
+#[derive(Serialize)]
+struct HostData {
+    #[serde(flatten)]
+    shaders: PageShaders,
+    style: String,
+    body: &'static str,
+}
+
 /// A page's text, and what it consists of.
 #[derive(Clone, Debug)]
 pub struct Page {
@@ -70,6 +79,9 @@ pub struct Page {
     /// Number of tracing points.
     pub points: usize,
 }
+
+/// Slower than what is usual for the best, and a hundredth smaller.
+const BEST: u32 = 10;
 
 /// Color keys are below: they and the kind of a patch fit an f32 (shaders/even.wgsl).
 const MOST_KEYS: usize = 1 << 20;
@@ -125,16 +137,19 @@ pub fn page(
         palettes: palettes(),
         color_maps: color_maps(),
     };
-    let host = packed_text(&PageShaders::new()?, host_script().as_bytes());
+    let host = HostData {
+        shaders: PageShaders::new()?,
+        style: minified::css(include_str!("../host/page.css")),
+        body: include_str!("../host/body.html"),
+    };
+    let host = packed_text(&host, host_script().as_bytes());
     let html = include_str!("../host/page.html")
         .replace("{title}", &escaped(&options.title))
-        .replace("{style}", &minified::css(include_str!("../host/page.css")))
         .replace(
             "{loader}",
             &minified::javascript(include_str!("../host/loader.js")),
         )
         .replace("{signs}", signs());
-    let html: String = html.lines().map(str::trim).collect::<Vec<_>>().join("\n");
     let host_bytes = html.len() + host.len();
     let html = html
         .replace("{host}", &host)
@@ -151,7 +166,7 @@ fn packed_text(json: &impl Serialize, bytes: &[u8]) -> String {
     let mut json = serde_json::to_vec(json).expect("our structs have string keys only");
     // What follows are numbers of 32 bits.
     json.resize(json.len().next_multiple_of(4), b' ');
-    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
+    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::new(BEST));
     let length = (json.len() as u32).to_le_bytes();
     let written = [&length[..], &json, bytes].map(|part| encoder.write_all(part));
     debug_assert!(written.iter().all(Result::is_ok));
