@@ -48,8 +48,8 @@ pub mod color {
 /// The shaders of pictures for a host that is not this crate, such as a browser.
 pub mod host {
     pub use crate::output::host::{
-        composed, drawing_shaders, finishing_shader, grid_sizes, id_shaders, key_light, numbers,
-        selection_entries, selection_shaders,
+        composed, drawing_shaders, finishing_shader, grid_sizes, id_shaders, key_light,
+        marker_shader, numbers, selection_entries, selection_shaders,
     };
 }
 

@@ -210,7 +210,7 @@ export class App {
     /** @type {HTMLSelectElement} */ (byId('scheme')).value = colors.scheme.id;
     const isScale = colors.isScale(), all = isScale ? scene.data.color_maps : scene.data.palettes;
     byId('colors-name').textContent = isScale ? 'Color map' : 'Palette';
-    byId('colors').replaceChildren(...all.map(({ name }) => new Option(name, name)));
+    byId('colors').replaceChildren(...all.map((/** @type {any} */ { name }) => new Option(name, name)));
     /** @type {HTMLSelectElement} */ (byId('colors')).value = (isScale ? colors.map : colors.palette).name;
     byId('time').hidden = !(colors.scheme.recording && scene.data.recording.times.length > 1);
     if (colors.scheme.recording) this.showFrame(colors.frame);
@@ -454,7 +454,10 @@ export class App {
   restore() {
     const state = read(location.hash), { camera, colors, scene } = this;
     const view = numbers(state.view, 6);
-    if (view && view[2] > 0) [camera.yaw, camera.pitch, camera.distance, ...camera.target] = /** @type {any} */ (view);
+    if (view && view[2] > 0) {
+      [camera.yaw, camera.pitch, camera.distance] = view;
+      camera.target = [view[3], view[4], view[5]];
+    }
     const flags = state.flags ?? '';
     const check = (/** @type {string} */ id, /** @type {boolean} */ on) => { /** @type {HTMLInputElement} */ (byId(id)).checked = on; };
     check('orthographic', flags.includes('o'));

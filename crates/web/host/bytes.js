@@ -1,6 +1,6 @@
 // Arrays of the page: see arrays.rs.
 
-/** @typedef {{ at: number, count: number, kind: 'u32' | 'u16' | 'u8' | 'records', records?: [number, number][] }} ArrayRef */
+/** @typedef {{ at: number, count: number, kind: 'u16' | 'u8' | 'records', records?: [number, number][] }} ArrayRef */
 
 /** The arrays of a page, in one stretch of bytes. */
 export class Arrays {
@@ -8,12 +8,6 @@ export class Arrays {
   constructor(bytes, first) {
     this.bytes = bytes;
     this.first = first;
-  }
-
-  /** @param {ArrayRef} ref @returns {Uint32Array} */
-  u32s({ at, count }) {
-    const from = this.first + at;
-    return new Uint32Array(this.bytes.slice(from, from + 4 * count));
   }
 
   /** Records, which stand byte by byte. @param {ArrayRef} ref @returns {Uint32Array} */

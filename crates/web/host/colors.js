@@ -51,7 +51,8 @@ export class Colors {
     /** Hidden categories, by scheme. @type {Map<string, Set<number>>} */
     this.hidden = new Map();
     /** Linear colors by key; the last component is 0 for those that are hidden. */
-    this.table = new Float32Array(4 * scene.keys);
+    this.table = new Float32Array(4 * scene.colors);
+    data.markers?.colors.forEach((/** @type {Rgb} */ color, /** @type {number} */ k) => this.table.set([...color.map(linear), 1], 4 * (scene.keys + k)));
   }
 
   /** @param {string} id */

@@ -32,24 +32,40 @@ export function ticks([low, high], more) {
  * @param {(index: number, alone: boolean) => void} toggle
  */
 export function showLegend(element, colors, toggle) {
-  element.replaceChildren();
-  if (colors.isScale()) {
-    element.append(...scale(colors));
-    return;
+  element.replaceChildren(...(colors.isScale() ? scale(colors) : categories(colors, toggle)));
+  for (const [color, name] of colors.scene.data.markers?.legend ?? []) {
+    const line = document.createElement('div');
+    line.className = 'marker';
+    line.append(dotOf(color), name);
+    element.append(line);
   }
-  const entries = colors.entries(), hidden = colors.hiddenNow();
+}
+
+/** @param {import('./colors.js').Rgb} color @returns {HTMLElement} */
+function dotOf(color) {
+  const dot = document.createElement('i');
+  dot.style.background = css(color);
+  return dot;
+}
+
+/**
+ * @param {import('./colors.js').Colors} colors @param {(index: number, alone: boolean) => void} toggle
+ * @returns {HTMLElement[]}
+ */
+function categories(colors, toggle) {
+  const made = [], entries = colors.entries(), hidden = colors.hiddenNow();
   if (entries.length > colors.palette.distinct.length && colors.scheme.id !== 'type') {
-    element.append(heading(`${entries.length} ${colors.scheme.label}s, colors repeat`));
+    made.push(heading(`${entries.length} ${colors.scheme.label}s, colors repeat`));
   }
   for (const { name, color, index } of entries.slice(0, MOST)) {
-    const button = document.createElement('button'), dot = document.createElement('i');
-    dot.style.background = css(color);
-    button.append(dot, name);
+    const button = document.createElement('button');
+    button.append(dotOf(color), name);
     button.setAttribute('aria-pressed', String(!hidden.has(index)));
     button.title = 'Click to hide or show, double-click or Shift to see it alone';
     button.onclick = (event) => toggle(index, event.shiftKey || event.detail === 2);
-    element.append(button);
+    made.push(button);
   }
+  return made;
 }
 
 /** @param {string} text @returns {HTMLElement} */

@@ -39,7 +39,26 @@ export class Scene {
     /** @type {any[]} */
     this.cells = data.cells;
     this.keys = this.cells.reduce((sum, cell) => sum + cell.keys, 0);
+    /** @type {Part[]} */
+    this.parts = [];
+    /** All parts, one after the other. */
+    this.packed = new Uint32Array(0);
+    /** Entries of the color table: points, then markers. */
+    this.colors = this.keys + (data.markers?.colors.length ?? 0);
+    /** Slots and explicit vertices of all parts. */
+    this.slots = 0;
+    this.explicit = 0;
     this.placeParts();
+    /** By key: section, or NO_SECTION. */
+    this.section = new Uint16Array(this.keys);
+    /** By key: µm along the neurite. */
+    this.distance = new Float32Array(this.keys);
+    /** By key: µm. */
+    this.radius = new Float32Array(this.keys);
+    /** By key. */
+    this.cellOf = new Uint16Array(this.keys);
+    /** Three coordinates by key: µm, in the world. */
+    this.centers = new Float64Array(3 * this.keys);
     this.readPoints();
     /** Spheres that hold all cells: center in the world, and radius (µm). */
     this.spheres = this.readSpheres();
@@ -48,9 +67,8 @@ export class Scene {
   /** Puts all parts into one buffer, and gives their patches and vertices numbers. Twin of batch.rs. */
   placeParts() {
     const { CLUSTER } = this.numbers;
-    /** @type {Part[]} */
-    this.parts = [];
     let words = 0, slots = 0, explicit = 0;
+    /** @type {[number, Uint32Array][]} */
     const texts = [];
     this.cells.forEach((cell, index) => {
       for (const { packed, layout, slots: own, explicit: vertices } of cell.parts) {
@@ -71,12 +89,6 @@ export class Scene {
 
   /** Reads what points are, and finds their centers in the packed mesh. Twin of template.wgsl. */
   readPoints() {
-    const count = this.keys;
-    this.section = new Uint16Array(count);
-    this.distance = new Float32Array(count);
-    this.radius = new Float32Array(count);
-    this.cellOf = new Uint16Array(count);
-    this.centers = new Float64Array(3 * count);
     this.cells.forEach((cell, index) => {
       const first = cell.first_key;
       this.section.set(this.arrays.u16s(cell.section), first);

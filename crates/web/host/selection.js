@@ -123,11 +123,7 @@ export class Selection {
     this.modules = {};
     /** @type {Record<string, GPUComputePipeline>} */
     this.pipelines = {};
-    this.makeGroups();
-  }
-
-  makeGroups() {
-    const { device, buffers: b } = this;
+    const b = this.buffers;
     const { COMPUTE, VERTEX } = GPUShaderStage;
     const read = 'read-only-storage', write = 'storage';
     this.layouts = {
@@ -147,7 +143,7 @@ export class Selection {
     const decide = written(b.decisions, b.ringLevels, b.single);
     const coarse = written(b.coarse), scan = written(b.buckets, b.draws);
     const lanes = (/** @type {number} */ count) => Math.ceil(count / this.numbers.CLUSTER);
-    const { QUEUE_PLAIN, QUEUE_ASKED, QUEUE_SHOWN, QUEUE_SECTIONS, QUEUE_RINGS, BUCKETS } = this.numbers;
+    const { QUEUE_PLAIN, QUEUE_ASKED, QUEUE_SHOWN, QUEUE_SECTIONS, QUEUE_RINGS } = this.numbers;
     /**
      * The passes in their order: entry point, group 2, and workgroups or a buffer with their number and its queue.
      * @type {[string, GPUBindGroup, number | GPUBuffer, number?][]}

@@ -2,6 +2,7 @@
 // select levels. The packed mesh is a texture; the card makes the vertices of a level once, by transform feedback, and
 // keeps them as long as they fit.
 
+import { WebGlMarkers } from './markers.js';
 import { nearest } from './webgpu.js';
 import { Struct, baseFields, clipFromRelative, rows, unit } from './shaders.js';
 import { quads } from './selection.js';
@@ -35,7 +36,7 @@ export class WebGlRenderer {
     this.scene = scene;
     this.shaders = shaders;
     this.name = 'WebGL 2';
-    const { capture, kept, ids } = shaders.glsl;
+    const { capture, kept, ids, dots } = shaders.glsl;
     this.programs = {
       capture: this.program(capture, capture, ['_vs2fs_location0', '_vs2fs_location1']),
       draw: this.program(kept, kept),
@@ -54,6 +55,12 @@ export class WebGlRenderer {
     /** @type {Stretch[]} */
     this.stretches = [];
     this.level = 0;
+    this.keeps = true;
+    /** Radius (µm) of the thickest part. */
+    this.thickest = scene.radius.reduce((most, radius) => Math.max(most, radius), 0) || 5;
+    /** @type {WebGLFramebuffer | undefined} */
+    this.ids = undefined;
+    this.markers = scene.data.markers ? new WebGlMarkers(gl, scene, this.program(dots, kept)) : null;
     gl.enable(gl.CULL_FACE);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.GREATER);
@@ -109,7 +116,6 @@ export class WebGlRenderer {
   /** The level that a picture has: chosen, or so that the thickest parts are round. @param {import('./camera.js').View} view @param {import('./webgpu.js').Look} look @param {number} distance */
   levelOf(view, look, distance) {
     if ('level' in look.lod) return look.lod.level;
-    this.thickest ??= this.scene.radius.reduce((most, radius) => Math.max(most, radius), 0) || 5;
     // A quarter of a circle in n chords is off by r (π / 4n)² / 2.
     const pixels = this.thickest / (view.flat + view.slope * distance);
     const level = Math.ceil(Math.PI / 4 * Math.sqrt(pixels / 2 / look.lod.pixels));
@@ -211,6 +217,7 @@ export class WebGlRenderer {
       const ofPatch = this.bindGrid(stretch, !!ink);
       gl.drawElements(ink ? gl.LINES : gl.TRIANGLES, ofPatch * stretch.slots, gl.UNSIGNED_INT, 0);
     }
+    if (program === this.programs.draw && !ink) this.markers?.draw(eye);
   }
 
   /**

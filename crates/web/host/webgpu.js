@@ -3,6 +3,7 @@
 // A **draft** is one coarse step, drawn at once while something moves; a fine picture is the mean of STEPS steps, each
 // offset within the pixel.
 
+import { WebGpuMarkers } from './markers.js';
 import { DEPTH, FORMATS, Finisher, Targets } from './finishing.js';
 import { DRAW_BYTES, Selection, bindGroup, buffer, bufferLayout, upload } from './selection.js';
 import { Struct, clipFromRelative, baseFields, unit, wgsl } from './shaders.js';
@@ -57,7 +58,7 @@ export class WebGpuRenderer {
     this.finisher = new Finisher(device, shaders, format);
     const { STORAGE, UNIFORM, COPY_DST } = GPUBufferUsage, { VERTEX, FRAGMENT } = GPUShaderStage;
     this.shade = buffer(device, 'shade', shaders.layouts.Shade.size / 4, UNIFORM | COPY_DST);
-    this.table = buffer(device, 'colors', 4 * scene.keys, STORAGE | COPY_DST);
+    this.table = buffer(device, 'colors', 4 * scene.colors, STORAGE | COPY_DST);
     const states = upload(device, 'states', new Uint32Array(4), STORAGE);
     this.shadeLayout = bufferLayout(device, [[0, VERTEX | FRAGMENT, 'uniform'], [1, VERTEX, 'read-only-storage'], [2, VERTEX, 'read-only-storage']]);
     this.shadeGroup = bindGroup(device, this.shadeLayout, { 0: this.shade, 1: this.table, 2: states });
@@ -65,12 +66,21 @@ export class WebGpuRenderer {
     this.targets = [];
     /** What the lists on the device are for. */
     this.selected = '';
+    /** Whether all passes are compiled, so that levels are selected. */
+    this.refines = false;
+    this.markers = scene.data.markers ? new WebGpuMarkers(device, scene, shaders, this.shadeLayout) : null;
+    /** Pipelines that picking needs. @type {Promise<GPURenderPipeline[]> | undefined} */
+    this.ids = undefined;
+    /** What saving needs. @type {{ layout: GPUBindGroupLayout, pipeline: GPUComputePipeline } | undefined} */
+    this.expand = undefined;
+    /** @type {GPURenderPipeline[]} */
+    this.flat = [];
   }
 
   /** Compiles what a picture at level 1 needs, which is drawn until all else is there. */
   async compile() {
     const flat = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, this.shaders.numbers.SAMPLES, [0]);
-    await Promise.all([this.selection.compile(true), this.finisher.compile()]);
+    await Promise.all([this.selection.compile(true), this.finisher.compile(), this.markers?.compile()]);
     this.flat = await flat;
     this.bundle = this.bundled(this.flat);
   }
@@ -79,7 +89,7 @@ export class WebGpuRenderer {
   async complete() {
     const others = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, this.shaders.numbers.SAMPLES, [1, 2]);
     await Promise.all([this.selection.compile(false), this.finisher.compileOcclusion()]);
-    this.bundle = this.bundled([.../** @type {GPURenderPipeline[]} */ (this.flat), ...await others]);
+    this.bundle = this.bundled([...this.flat, ...await others]);
     this.refines = true;
     this.selected = '';
   }
@@ -150,7 +160,7 @@ export class WebGpuRenderer {
       clip_from_relative: clipFromRelative(view, size[0] / size[1]), right, near, up, slope, backward, half_width: HALF_WIDTH,
       key: unit(this.shaders.key_light), wire: look.wireframe ? 0.5 * share : 0, size, tile_origin: [x + turn[0], y + turn[1]],
       viewport_origin: [x - GUARD, y - GUARD], viewport_size: [width + 2 * GUARD, height + 2 * GUARD], lit: look.lit ? 1 : 0,
-      scale_entries: 0, colors: this.scene.keys, valued: 0, ghosted: 1, jitter, least_half_width: 0.5 * look.leastWidth * share,
+      scale_entries: 0, colors: this.scene.colors, valued: 0, ghosted: 1, jitter, least_half_width: 0.5 * look.leastWidth * share,
       edge: [0, 0, 0, 100], flat, steps, turn,
     }).bytes);
   }
@@ -183,6 +193,7 @@ export class WebGpuRenderer {
       depthStencilAttachment: { view: targets.depth, depthClearValue: 0, depthLoadOp: 'clear', depthStoreOp: 'discard' } });
     pass.setViewport(-GUARD, -GUARD, width + 2 * GUARD, height + 2 * GUARD, 0, 1);
     pass.executeBundles([/** @type {GPURenderBundle} */ (this.bundle)]);
+    this.markers?.draw(pass, view, this.shadeGroup);
     pass.end();
     this.finisher.finish(encoder, targets, view, { step, steps, occlusion: look.occlusion && steps > 1, background: look.background });
     this.finisher.show(encoder, targets, this.context.getCurrentTexture());
@@ -255,10 +266,13 @@ export class WebGpuRenderer {
   async vertices(part, level, columns, first, slots) {
     const { device, shaders } = this, { STORAGE, COPY_SRC, UNIFORM, COPY_DST } = GPUBufferUsage, { COMPUTE } = GPUShaderStage;
     const count = slots * columns * columns;
-    const layout = this.expandLayout ??= bufferLayout(device, [[0, COMPUTE, 'read-only-storage'], [1, COMPUTE, 'uniform'], [2, COMPUTE, 'storage']]);
-    const pipeline = this.expand ??= await device.createComputePipelineAsync({ label: 'expand',
-      layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }),
-      compute: { module: device.createShaderModule({ label: 'expand', code: wgsl(shaders, 'expand') }), entryPoint: 'expand' } });
+    if (!this.expand) {
+      const layout = bufferLayout(device, [[0, COMPUTE, 'read-only-storage'], [1, COMPUTE, 'uniform'], [2, COMPUTE, 'storage']]);
+      const module = device.createShaderModule({ label: 'expand', code: wgsl(shaders, 'expand') });
+      this.expand = { layout, pipeline: await device.createComputePipelineAsync({ label: 'expand',
+        layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }), compute: { module, entryPoint: 'expand' } }) };
+    }
+    const { layout, pipeline } = this.expand;
     const uniform = buffer(device, 'even', shaders.layouts.Even.size / 4, UNIFORM | COPY_DST);
     const made = buffer(device, 'vertices', 8 * count, STORAGE | COPY_SRC);
     device.queue.writeBuffer(uniform, 0, new Struct(shaders.layouts.Even).set({ ...baseFields(part.base), level, columns,

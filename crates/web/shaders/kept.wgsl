@@ -75,6 +75,21 @@ fn vertex(@location(0) place: vec4<f32>, @location(1) around: vec4<f32>) -> Vary
     return out;
 }
 
+// A marker: a corner of a unit sphere; a center relative to the eye, and a radius; a linear color.
+@vertex
+fn marker(@location(0) corner: vec4<f32>, @location(1) center: vec4<f32>, @location(2) color: vec4<f32>) -> Varying {
+    var out: Varying;
+    let depth = max(-dot(center.xyz, shade.backward), shade.near);
+    // At least three pixels wide, as in pictures.
+    let radius = max(center.w, 1.5 * (shade.slope * depth + shade.flat));
+    let relative = center.xyz + radius * corner.xyz;
+    out.position = shade.clip_from_relative * vec4(relative, 1.0);
+    out.normal = vec4(corner.xyz, 1.0);
+    out.relative = vec4(relative, 0.0);
+    out.color = vec4(color.rgb, 0.0);
+    return out;
+}
+
 // IEC 61966-2-1.
 fn encoded(linear: vec3<f32>) -> vec3<f32> {
     let c = clamp(linear, vec3(0.0), vec3(1.0));

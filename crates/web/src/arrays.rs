@@ -15,7 +15,7 @@ pub(crate) struct ArrayRef {
     at: usize,
     /// Number of elements.
     count: usize,
-    /// `u32`: as they are, `u16`: differences to the one before, low bytes first, then high bytes; `u8`;
+    /// `u16`: differences to the one before, low bytes first, then high bytes; `u8`;
     /// `records`: see [`Arrays::records`].
     kind: &'static str,
     /// Of records: those of one size after the other, their number and their size in numbers.
@@ -24,20 +24,6 @@ pub(crate) struct ArrayRef {
 }
 
 impl Arrays {
-    /// Adds numbers as they are.
-    pub(crate) fn u32s(&mut self, values: &[u32]) -> ArrayRef {
-        let at = self.bytes.len();
-        self.bytes
-            .extend(values.iter().flat_map(|value| value.to_le_bytes()));
-        let (count, kind) = (values.len(), "u32");
-        ArrayRef {
-            at,
-            count,
-            kind,
-            records: Vec::new(),
-        }
-    }
-
     /// Adds stretches of records, each with the size of its records: first bytes of all records of a stretch, then
     /// second bytes, each as its difference to the one before. What a field has in common in all records then
     /// stands together, and a packed mesh takes 30 % less when it is compressed.

@@ -13,7 +13,7 @@ macro_rules! module {
 }
 
 /// The modules, each after those that it imports from.
-const MODULES: [(&str, &str); 18] = [
+const MODULES: [(&str, &str); 19] = [
     module!("vectors"),
     module!("bytes"),
     module!("scene"),
@@ -23,6 +23,7 @@ const MODULES: [(&str, &str); 18] = [
     module!("selection"),
     module!("finishing"),
     module!("ranges"),
+    module!("markers"),
     module!("webgpu"),
     module!("webgl"),
     module!("saving"),

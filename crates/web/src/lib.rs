@@ -28,7 +28,7 @@ mod texture_source;
 
 pub use cell::{PageCell, packed_parts};
 pub use error::WebError;
-pub use markers::PageMarker;
+pub use markers::PageMarkers;
 pub use page::{Page, PageOptions, page};
 pub use recording::PageRecording;
 pub use schemes::PageScheme;

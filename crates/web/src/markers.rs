@@ -5,13 +5,17 @@ use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays};
 
-/// A marker.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PageMarker {
-    /// Where it is (µm, in the world).
-    pub position: [f64; 3],
-    /// Its color.
-    pub color: Rgb,
+/// Markers, and what their colors mean.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PageMarkers {
+    /// Where each is (µm, in the world), and the index of its color.
+    pub markers: Vec<([f64; 3], usize)>,
+    /// The colors.
+    pub colors: Vec<Rgb>,
+    /// Radius (µm).
+    pub radius: f64,
+    /// What the legend lists of them.
+    pub legend: Vec<(Rgb, String)>,
 }
 
 /// Markers as the page's host reads them.
@@ -21,23 +25,29 @@ pub(crate) struct MarkerData {
     origin: [f64; 3],
     /// Three coordinates of each, as bits of f32.
     positions: ArrayRef,
-    /// Three bytes of each.
-    colors: ArrayRef,
+    /// Index of the color of each.
+    categories: ArrayRef,
+    colors: Vec<Rgb>,
+    radius: f64,
+    legend: Vec<(Rgb, String)>,
 }
 
 impl MarkerData {
     /// None if there are no markers.
-    pub(crate) fn new(markers: &[PageMarker], arrays: &mut Arrays) -> Option<Self> {
-        let origin = markers.first()?.position;
-        let relative = markers
-            .iter()
-            .flat_map(|marker| [0, 1, 2].map(|k| (marker.position[k] - origin[k]) as f32));
+    pub(crate) fn new(set: &PageMarkers, arrays: &mut Arrays) -> Option<Self> {
+        let origin = set.markers.first()?.0;
+        let relative = set.markers.iter();
+        let relative = relative.flat_map(|(at, _)| [0, 1, 2].map(|k| (at[k] - origin[k]) as f32));
         let bits: Vec<u32> = relative.map(f32::to_bits).collect();
-        let colors: Vec<u8> = markers.iter().flat_map(|marker| marker.color).collect();
+        let categories = set.markers.iter();
+        let categories: Vec<u16> = categories.map(|&(_, color)| color as u16).collect();
         Some(Self {
             origin,
-            positions: arrays.u32s(&bits),
-            colors: arrays.u8s(&colors),
+            positions: arrays.records(&[(&bits, 3)]),
+            categories: arrays.u16s(&categories),
+            colors: set.colors.clone(),
+            radius: set.radius,
+            legend: set.legend.clone(),
         })
     }
 }

@@ -18,7 +18,7 @@ use crate::base85::{base85, signs};
 use crate::cell::{CellData, MOST_PATCHES, PageCell};
 use crate::error::WebError;
 use crate::host_script::host_script;
-use crate::markers::{MarkerData, PageMarker};
+use crate::markers::{MarkerData, PageMarkers};
 use crate::minified;
 use crate::recording::{PageRecording, RecordingData};
 use crate::schemes::{ColorMapData, PageScheme, PaletteData, SchemeData, color_maps, palettes};
@@ -94,7 +94,7 @@ pub fn page(
     cells: &[PageCell<'_>],
     schemes: &[PageScheme<'_>],
     recording: Option<&PageRecording>,
-    markers: &[PageMarker],
+    markers: &PageMarkers,
     options: &PageOptions,
 ) -> Result<Page, WebError> {
     let points: usize = cells.iter().map(|c| c.cell.mesh.tracing.len()).sum();

@@ -47,7 +47,8 @@ pub(crate) struct PageShaders {
 }
 
 /// Structs of uniforms and buffers that the host writes, each with a module that has it.
-const LAYOUTS: [(&str, &str); 6] = [
+const LAYOUTS: [(&str, &str); 7] = [
+    ("MarkerFrame", "markers"),
     ("Frame", "classify"),
     ("Placed", "classify"),
     ("Shade", "draw2"),
@@ -68,6 +69,7 @@ pub fn modules() -> Vec<(String, Shader)> {
         let numbered = shaders.into_iter().enumerate();
         all.extend(numbered.map(|(kind, shader)| (format!("{name}{kind}"), shader)));
     }
+    all.push(("markers".to_owned(), host::marker_shader()));
     all.push(("finish".to_owned(), host::finishing_shader()));
     all.push(named(host::composed("expand", &[EVEN, EXPAND])));
     all.push(named(host::composed("present", &[PRESENTED])));
@@ -75,7 +77,7 @@ pub fn modules() -> Vec<(String, Shader)> {
 }
 
 /// GLSL ES 3.00 of the two programs of WebGL, from WGSL: vertices at one level, and their drawing.
-fn programs() -> Result<[(&'static str, GlslProgram); 3], WebError> {
+fn programs() -> Result<[(&'static str, GlslProgram); 4], WebError> {
     let capture = host::composed("captured", &[EVEN, CAPTURED]);
     let text = packed_in_texture(&capture.text);
     let kept = host::composed("kept", &[KEPT]).text;
@@ -85,6 +87,7 @@ fn programs() -> Result<[(&'static str, GlslProgram); 3], WebError> {
             glsl("captured", [&text, NOTHING.text], ["capture", "nothing"])?,
         ),
         ("kept", glsl("kept", [&kept; 2], ["vertex", "fragment"])?),
+        ("dots", glsl("kept", [&kept; 2], ["marker", "fragment"])?),
         ("ids", glsl("kept", [&kept; 2], ["vertex", "fragment_id"])?),
     ])
 }
@@ -115,9 +118,12 @@ impl PageShaders {
         let mut programs = BTreeMap::from(programs()?);
         let kept = host::composed("kept", &[KEPT]);
         layouts.insert("Kept", layout(&kept, "Kept")?);
-        // Both have the same vertex stage.
+        // Both stages are those of `kept`.
         if let Some(ids) = programs.get_mut("ids") {
             ids.vertex.clear();
+        }
+        if let Some(dots) = programs.get_mut("dots") {
+            dots.fragment.clear();
         }
         let entries = host::selection_entries().iter();
         let entries =

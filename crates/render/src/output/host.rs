@@ -15,6 +15,7 @@ use crate::sources::adaptive::passes::{ENTRIES, modules};
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::settings::{self, FlatIndices};
 use crate::sources::adaptive::work::QUEUE_U32S;
+use crate::sources::markers;
 
 /// Samples of a pixel in each step.
 const SAMPLES: u32 = 4;
@@ -42,6 +43,15 @@ pub fn drawing_shaders() -> Vec<Shader> {
         shade_shader(&parts, key)
     };
     (0..Refiner::SHADERS).map(hiding).collect()
+}
+
+/// The shader that draws markers. Entry points as those of [`drawing_shaders`].
+pub fn marker_shader() -> Shader {
+    let key = PipelineKey {
+        samples: SAMPLES,
+        ..PipelineKey::default()
+    };
+    shade_shader(&markers::vertex_shader(), key)
 }
 
 /// The shaders that draw picking ids: second the color key. Entry points `vertex_id` and `fragment_id`.
@@ -78,6 +88,7 @@ pub fn numbers() -> Vec<(String, f64)> {
     };
     let mut numbers = settings::constants().numbers();
     numbers.extend(constants(key).numbers());
+    numbers.extend(markers::vertex_shader().constants.numbers());
     numbers.extend(
         [
             ("QUEUE_U32S", QUEUE_U32S as f64),

@@ -7,8 +7,8 @@ use std::io::Write;
 
 use neurotess::coloring::{Cell, ColorBy, ColorScheme, Coloring, OwnColors, coloring};
 use neurotess::render::color::CATEGORY_BIT;
-use neurotess::render::{Look, Placement};
-use neurotess::web::{PageCell, PageMarker, PageOptions, PageRecording, PageScheme, page};
+use neurotess::render::{Look, Marker, MarkerSettings, Placement};
+use neurotess::web::{PageCell, PageMarkers, PageOptions, PageRecording, PageScheme, page};
 use serde::Serialize;
 
 use crate::commands::render::{
@@ -196,23 +196,22 @@ impl Content<'_> {
         }
     }
 
-    fn markers(
-        &self,
-        scheme: &ColorScheme,
-        reporter: &Reporter,
-    ) -> anyhow::Result<Vec<PageMarker>> {
+    fn markers(&self, scheme: &ColorScheme, reporter: &Reporter) -> anyhow::Result<PageMarkers> {
         let set = markers::read(self.render, self.instances, scheme, reporter)?;
         let Some(set) = set else {
-            return Ok(Vec::new());
+            return Ok(PageMarkers::default());
         };
-        let marker = |marker: &neurotess::render::Marker| {
-            let color = set.colors.get((marker.color_key & !CATEGORY_BIT) as usize);
-            PageMarker {
-                position: marker.position.to_array(),
-                color: color.copied().unwrap_or_default(),
-            }
+        let marker = |marker: &Marker| {
+            let color = (marker.color_key & !CATEGORY_BIT) as usize;
+            (marker.position.to_array(), color)
         };
-        Ok(set.markers.iter().map(marker).collect())
+        let size = self.args.markers.marker_size;
+        Ok(PageMarkers {
+            markers: set.markers.iter().map(marker).collect(),
+            radius: size.map_or(MarkerSettings::default().radius, |size| 0.5 * size),
+            legend: set.legend.entries().to_vec(),
+            colors: set.colors,
+        })
     }
 }
 
