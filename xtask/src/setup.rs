@@ -72,11 +72,19 @@ const VALGRIND: Installed = Installed {
     is_there: || starts("valgrind", "--version"),
 };
 
+/// What opens pages.
+const CHROMIUM: Installed = Installed {
+    what: "Chromium",
+    needed_to: "open pages; their tests are skipped",
+    packages: &["chromium"],
+    is_there: || starts("chromium", "--version"),
+};
+
 /// Sets up all that the tests of a lane need. Returns a line about each.
 pub(crate) fn run(lane: Lane) -> anyhow::Result<String> {
     let mut parts = vec![VULKAN, OPENGL, DISPLAY];
     if lane == Lane::Full {
-        parts.push(VALGRIND);
+        parts.extend([VALGRIND, CHROMIUM]);
     }
     let graphics = match cfg!(target_os = "linux") {
         true => {

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::error::WebError;
 use crate::minified;
+use crate::shortened::{Language, shortened};
 
 /// A program of two stages.
 #[derive(Clone, Debug, Serialize)]
@@ -40,9 +41,25 @@ pub(crate) fn glsl(
         let written = stage_text(&module, &info, stage, entry, &mut names);
         written.map_err(|e| fault(e.to_string()))
     };
+    let stages = [
+        stage(0, ShaderStage::Vertex)?,
+        stage(1, ShaderStage::Fragment)?,
+    ];
+    // Names that the host or the other stage knows begin with an underscore or are these.
+    let known: Vec<&String> = names.values().flatten().collect();
+    let keeps = |name: &str| {
+        let is_outside = ["_vs2fs", "_p2vs", "_fs2p", "_group", "gl_", "naga_"];
+        is_outside.iter().any(|start| name.starts_with(start))
+            || name == "main"
+            || known.iter().any(|glsl| *glsl == name)
+    };
+    let [vertex, fragment] = stages.map(|text| {
+        let short = shortened(&[text], Language::Glsl, keeps);
+        short.into_iter().next().unwrap_or_default()
+    });
     Ok(GlslProgram {
-        vertex: stage(0, ShaderStage::Vertex)?,
-        fragment: stage(1, ShaderStage::Fragment)?,
+        vertex,
+        fragment,
         names,
     })
 }

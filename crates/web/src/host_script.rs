@@ -74,10 +74,8 @@ fn imported(import: &str) -> String {
 
 /// The name that a declaration gives.
 fn exported(declaration: &str) -> &str {
-    let words = declaration.split(|c: char| !c.is_alphanumeric() && c != '_');
-    let name = words
-        .filter(|word| !word.is_empty() && !["async", "function", "class", "const"].contains(word))
-        .next();
+    let mut words = declaration.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let name = words.find(|word| !["", "async", "function", "class", "const"].contains(word));
     name.expect("an export of the host is a declaration")
 }
 

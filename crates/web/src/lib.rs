@@ -24,6 +24,7 @@ mod page;
 mod recording;
 mod schemes;
 mod shaders;
+mod shortened;
 mod texture_source;
 
 pub use cell::{PageCell, packed_parts};

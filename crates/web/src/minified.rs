@@ -75,7 +75,12 @@ pub(crate) fn javascript(text: &str) -> String {
             _ => sign.len_utf8(),
         };
         let is_alone = |sign: char| "{}()[],;:=<>?!&|*".contains(sign);
-        if space && !out.ends_with('\n') && !is_alone(sign) && !out.ends_with(is_alone) {
+        if space
+            && !out.is_empty()
+            && !out.ends_with('\n')
+            && !is_alone(sign)
+            && !out.ends_with(is_alone)
+        {
             out.push(' ');
         }
         space = false;

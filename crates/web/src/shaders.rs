@@ -10,6 +10,7 @@ use crate::error::WebError;
 use crate::glsl::{GlslProgram, glsl};
 use crate::layout::{Layout, layout};
 use crate::minified::wgsl;
+use crate::shortened::{Language, shortened};
 use crate::texture_source::packed_in_texture;
 
 /// A file of this crate.
@@ -92,6 +93,14 @@ fn programs() -> Result<[(&'static str, GlslProgram); 4], WebError> {
     ])
 }
 
+/// Names of WGSL that the host uses.
+fn entry_points() -> Vec<&'static str> {
+    let selection = host::selection_entries().iter().map(|&(_, name, _)| name);
+    let others = "vertex fragment vertex_id fragment_id find_blocks copy_depths occlude blur_rows blur_columns accumulate \
+                  expand corner show";
+    selection.chain(others.split_whitespace()).collect()
+}
+
 impl PageShaders {
     pub(crate) fn new() -> Result<Self, WebError> {
         let all = modules();
@@ -109,6 +118,8 @@ impl PageShaders {
             let texts = texts.filter(|text| !text.is_empty());
             joined.insert(name.clone(), texts.map(&mut piece).collect());
         }
+        let kept = entry_points();
+        let pieces = shortened(&pieces, Language::Wgsl, |name| kept.contains(&name));
         let mut layouts = BTreeMap::new();
         for (of, module) in LAYOUTS {
             let shader = all.iter().find(|(name, _)| name == module);

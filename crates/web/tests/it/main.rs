@@ -1,3 +1,9 @@
-//! Pages: what is in them.
+//! Pages: what is in them, and what a browser makes of them.
+
+mod browser;
+mod browsing;
+mod contents;
+mod unpacked;
+mod written;
 
 neurotess_testing::main!();

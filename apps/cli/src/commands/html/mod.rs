@@ -5,8 +5,8 @@ mod recording;
 
 use std::io::Write;
 
-use neurotess::coloring::{Cell, ColorBy, ColorScheme, Coloring, OwnColors, coloring};
-use neurotess::render::color::CATEGORY_BIT;
+use neurotess::coloring::{Cell, ColorBy, ColorScheme, Coloring, MarkerSet, OwnColors, coloring};
+use neurotess::render::color::{CATEGORY_BIT, Rgb};
 use neurotess::render::{Look, Marker, MarkerSettings, Placement};
 use neurotess::web::{PageCell, PageMarkers, PageOptions, PageRecording, PageScheme, page};
 use serde::Serialize;
@@ -209,9 +209,20 @@ impl Content<'_> {
         Ok(PageMarkers {
             markers: set.markers.iter().map(marker).collect(),
             radius: size.map_or(MarkerSettings::default().radius, |size| 0.5 * size),
-            legend: set.legend.entries().to_vec(),
+            legend: marker_legend(&set),
             colors: set.colors,
         })
+    }
+}
+
+/// What the legend lists of markers: their categories, or the ends of their scale.
+fn marker_legend(set: &MarkerSet) -> Vec<(Rgb, String)> {
+    let ends = [set.colors.first(), set.colors.last()];
+    match (set.legend.range(), ends) {
+        (Some((range, _)), [Some(&low), Some(&high)]) => [(low, range[0]), (high, range[1])]
+            .map(|(color, end)| (color, format!("{} {end}", set.legend.title())))
+            .into(),
+        _ => set.legend.entries().to_vec(),
     }
 }
 

@@ -10,6 +10,7 @@ fn help_is_as_agreed() {
         "info",
         "mesh",
         "render",
+        "html",
         "check",
         "convert",
         "diff",

@@ -10,6 +10,7 @@ mod display;
 mod foreign_circuits;
 mod formats;
 mod help;
+mod html;
 mod info;
 mod inputs;
 mod kill;

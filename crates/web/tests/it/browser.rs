@@ -1,0 +1,194 @@
+//! A headless Chromium, spoken to by the DevTools protocol through two named pipes: no other program is needed.
+
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+/// WebGPU and WebGL by Chromium's own software, which is part of it.
+const SOFTWARE: [&str; 6] = [
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader",
+    "--use-angle=swiftshader",
+    // Without it, WebGL says that it is by software.
+    "--enable-unsafe-swiftshader",
+];
+/// What keeps it from asking others for anything.
+const QUIET: [&str; 8] = [
+    "--headless",
+    "--no-sandbox",
+    "--no-first-run",
+    "--disable-quic",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--remote-debugging-pipe",
+];
+/// Time after which an answer will not come: software compiles shaders for half a minute on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// The need of tests that open pages.
+pub(crate) fn chromium() -> Result<(), String> {
+    let there = Command::new("chromium").arg("--version").output();
+    let there = there.is_ok_and(|output| output.status.success()) && cfg!(unix);
+    there
+        .then_some(())
+        .ok_or_else(|| "no Chromium: cargo xtask setup --full installs it".into())
+}
+
+/// A page that is open.
+pub(crate) struct Browser {
+    child: Child,
+    to: File,
+    from: Receiver<Value>,
+    session: Value,
+    asked: u64,
+    /// What was printed to the console, what failed, and addresses that were asked for.
+    pub(crate) said: Vec<String>,
+}
+
+impl Browser {
+    /// Opens a file in a window of this size. `folder`: for the pipes.
+    pub(crate) fn open(folder: &Path, page: &Path, hash: &str, size: [u32; 2]) -> Self {
+        let [to, from] = ["to", "from"].map(|name| folder.join(name));
+        let made = Command::new("mkfifo").args([&to, &from]).status();
+        assert!(made.is_ok_and(|status| status.success()), "named pipes");
+        let profile = format!("--user-data-dir={}", folder.join("profile").display());
+        let child = Command::new("sh")
+            .args([
+                "-c",
+                "exec chromium \"$@\" 3<\"$TO\" 4>\"$FROM\"",
+                "chromium",
+            ])
+            .args(QUIET)
+            .args(SOFTWARE)
+            .arg(profile)
+            .envs([("TO", &to), ("FROM", &from)])
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Chromium");
+        // In the order in which the shell opens them, since each waits for the other end.
+        let to = OpenOptions::new().write(true).open(to).expect("a pipe");
+        let from = File::open(from).expect("a pipe");
+        let (send, receive) = channel();
+        std::thread::spawn(move || {
+            for message in BufReader::new(from).split(0).map_while(Result::ok) {
+                let message = serde_json::from_slice(&message).expect("JSON");
+                if send.send(message).is_err() {
+                    return;
+                }
+            }
+        });
+        let mut browser = Self {
+            child,
+            to,
+            from: receive,
+            session: Value::Null,
+            asked: 0,
+            said: Vec::new(),
+        };
+        browser.begin(page, hash, size);
+        browser
+    }
+
+    fn begin(&mut self, page: &Path, hash: &str, [width, height]: [u32; 2]) {
+        let target = self.ask("Target.createTarget", &json!({"url": "about:blank"}));
+        let attach = json!({"targetId": target["targetId"], "flatten": true});
+        self.session = self.ask("Target.attachToTarget", &attach)["sessionId"].clone();
+        for domain in [
+            "Runtime.enable",
+            "Log.enable",
+            "Network.enable",
+            "Page.enable",
+        ] {
+            self.ask(domain, &json!({}));
+        }
+        let size =
+            json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+        self.ask("Emulation.setDeviceMetricsOverride", &size);
+        let address = format!("file://{}{hash}", page.display());
+        self.ask("Page.navigate", &json!({"url": address}));
+        self.evaluate(
+            "(async () => {
+               while (!window.neurotess?.ready) await new Promise((r) => setTimeout(r, 20));
+               await neurotess.ready;
+             })()",
+        );
+    }
+
+    /// The value of an expression, or of what it promises.
+    pub(crate) fn evaluate(&mut self, expression: &str) -> Value {
+        let asked = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
+        let answer = self.ask("Runtime.evaluate", &asked);
+        let fault = &answer["exceptionDetails"];
+        assert!(fault.is_null(), "{expression}: {fault}");
+        answer["result"]["value"].clone()
+    }
+
+    /// The answer to a command. What happens meanwhile is noted.
+    fn ask(&mut self, method: &str, params: &Value) -> Value {
+        self.asked += 1;
+        let mut message = json!({"id": self.asked, "method": method, "params": params});
+        if !self.session.is_null() {
+            message["sessionId"] = self.session.clone();
+        }
+        let mut bytes = serde_json::to_vec(&message).expect("JSON");
+        bytes.push(0);
+        self.to.write_all(&bytes).expect("Chromium listens");
+        loop {
+            let answer = self.from.recv_timeout(PATIENCE);
+            let answer = answer.unwrap_or_else(|e| panic!("{method}: no answer: {e}"));
+            if answer["id"] == self.asked {
+                assert!(answer["error"].is_null(), "{method}: {}", answer["error"]);
+                return answer["result"].clone();
+            }
+            self.note(&answer);
+        }
+    }
+
+    fn note(&mut self, event: &Value) {
+        let params = &event["params"];
+        let said = match event["method"].as_str() {
+            Some("Runtime.consoleAPICalled") => &params["args"],
+            Some("Log.entryAdded") => &params["entry"],
+            Some("Runtime.exceptionThrown") => &params["exceptionDetails"],
+            Some("Network.requestWillBeSent") => {
+                let address = &params["request"]["url"];
+                let own = address
+                    .as_str()
+                    .is_some_and(|a| a.starts_with("file:") || a == "about:blank");
+                if own {
+                    return;
+                }
+                address
+            }
+            _ => return,
+        };
+        self.said.push(said.to_string());
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It ends its own processes when it is told; a kill alone would leave them.
+        let _ = self
+            .to
+            .write_all(b"{\"id\":0,\"method\":\"Browser.close\"}\0");
+        for _ in 0..100 {
+            if matches!(self.child.try_wait(), Ok(Some(_))) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

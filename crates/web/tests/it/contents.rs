@@ -1,0 +1,141 @@
+//! What is in a page: everything that it needs, and nothing that it would ask for.
+
+use neurotess_refine::testing::naga;
+use neurotess_testing::{shared, shared_data};
+use neurotess_web::{PageMarkers, WebError, modules, packed_parts};
+
+use crate::unpacked::Unpacked;
+use crate::written::{Meshed, page_of, written};
+
+/// Most bytes of what is the same in all pages.
+const HOST: usize = 86_000;
+
+#[neurotess_testing::test]
+fn a_page_asks_for_nothing() {
+    let (_, page) = page_of(Meshed::sample("granule"));
+    let script = Unpacked::of(&page.html, "host").bytes;
+    let script = String::from_utf8(script).expect("text");
+    let (before, rest) = page.html.split_once("id=\"host\">").expect("a host");
+    let (_, loader) = rest.split_once("id=\"cells\">").expect("cells");
+    let (_, loader) = loader.split_once('<').expect("an end");
+    assert!(
+        before.contains("default-src 'none'"),
+        "browsers forbid all requests"
+    );
+    for text in [before, loader, &script] {
+        for way in [
+            "http://", "https://", "src=", "href=\"", "fetch(", "import(", "XMLHttp", "url(",
+        ] {
+            assert!(!text.contains(way), "{way}");
+        }
+        assert!(
+            !text.contains("import ") && !text.contains("export "),
+            "modules are functions"
+        );
+    }
+}
+
+#[neurotess_testing::test]
+fn packed_meshes_are_those_of_the_library() {
+    let cells = [Meshed::sample("granule"), Meshed::sample("motor")];
+    let page = written(&cells, None, &PageMarkers::default(), "two").expect("a page");
+    let read = Unpacked::of(&page.html, "cells");
+    let mut first_key = 0;
+    for (data, cell) in read.json["cells"]
+        .as_array()
+        .expect("cells")
+        .iter()
+        .zip(&cells)
+    {
+        assert_eq!(data["first_key"], first_key);
+        let ours = packed_parts(&cell.cell(), first_key);
+        let theirs = data["parts"].as_array().expect("parts");
+        assert_eq!(ours.len(), theirs.len());
+        for (our, their) in ours.iter().zip(theirs) {
+            assert!(
+                our.packed == read.records(&their["packed"]),
+                "{}",
+                cell.name
+            );
+            assert_eq!(their["slots"], our.patches.len());
+        }
+        first_key += cell.mesh.tracing.len();
+    }
+    assert_eq!(page.points, first_key);
+}
+
+#[neurotess_testing::test]
+fn the_host_is_small() {
+    let (_, page) = page_of(Meshed::sample("granule"));
+    assert!(page.host_bytes < HOST, "{}", page.host_bytes);
+}
+
+#[neurotess_testing::test(needs(shared))]
+fn five_thousand_points_take_200_kilobytes_at_most() {
+    let (cell, page) = page_of(Meshed::read(&shared_data().join("swc/IF4_140201.CNG.swc")));
+    let points = cell.morphology.points.len();
+    assert!((4_500..=5_000).contains(&points), "{points}");
+    assert!(page.html.len() <= 200_000, "{}", page.html.len());
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::full, shared))]
+fn twenty_thousand_points_take_700_kilobytes_at_most() {
+    let (cell, page) = page_of(Meshed::read(&shared_data().join("swc/vd130423_idC.swc")));
+    let points = cell.morphology.points.len();
+    assert!((18_000..=20_000).contains(&points), "{points}");
+    assert!(page.html.len() <= 700_000, "{}", page.html.len());
+}
+
+#[neurotess_testing::test]
+fn shaders_of_a_page_are_valid_as_they_are_joined() {
+    let (_, page) = page_of(Meshed::sample("granule"));
+    let host = Unpacked::of(&page.html, "host").json;
+    let pieces = host["pieces"].as_array().expect("pieces");
+    let joined = host["modules"].as_object().expect("modules");
+    assert_eq!(joined.len(), modules().len());
+    for (name, indices) in joined {
+        let indices = indices.as_array().expect("indices").iter();
+        let texts = indices.map(|k| pieces[k.as_u64().expect("an index") as usize].as_str());
+        let text: Option<Vec<&str>> = texts.collect();
+        let text = text.expect("texts").join("\n");
+        let module = naga::front::wgsl::parse_str(&text);
+        let module = module.unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::default(),
+        );
+        validator
+            .validate(&module)
+            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        // As many as WebGPU has without asking.
+        let storage = text.matches("var<storage").count();
+        assert!(
+            storage <= 8 || !name.starts_with("draw"),
+            "{name} binds {storage} buffers"
+        );
+    }
+    for (name, program) in host["glsl"].as_object().expect("programs") {
+        for stage in ["vertex", "fragment"] {
+            let text = program[stage].as_str().expect("text");
+            assert!(
+                text.is_empty() || text.starts_with("#version 300 es\n"),
+                "{name} {stage}"
+            );
+        }
+    }
+}
+
+#[neurotess_testing::test]
+fn titles_are_text() {
+    let cells = [Meshed::sample("granule")];
+    let title = "a<script>alert(\"1\")</script> & b";
+    let page = written(&cells, None, &PageMarkers::default(), title).expect("a page");
+    let title = "<title>a&lt;script>alert(&quot;1&quot;)&lt;/script> &amp; b</title>";
+    assert!(page.html.contains(title));
+}
+
+#[neurotess_testing::test]
+fn there_must_be_something_to_show() {
+    let made = written(&[], None, &PageMarkers::default(), "none");
+    assert!(matches!(made, Err(WebError::Empty)));
+}
