@@ -3,7 +3,8 @@
 import { Camera } from './camera.js';
 import { Colors, css, isDark } from './colors.js';
 import { showLegend, showScale } from './legend.js';
-import { numbers, read, short, written } from './link.js';
+import { LEVELS, read, restore, stateOf } from './link.js';
+import { Measuring, described } from './measuring.js';
 import { Loop } from './loop.js';
 import { listen } from './pointer.js';
 import { ply, save, surface } from './saving.js';
@@ -12,8 +13,6 @@ import { Scene } from './scene.js';
 import { STEPS, WebGpuRenderer } from './webgpu.js';
 import { WebGlRenderer } from './webgl.js';
 
-/** Levels of the slider; the first place is the automatic one. */
-const LEVELS = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 /** Error (pixels) of automatic levels: at rest it cannot be seen. */
 const PIXELS = 0.5, DRAFT_PIXELS = 2, DRAFT_LEVEL = 3;
 /** Milliseconds between two questions what is under the pointer. */
@@ -34,10 +33,8 @@ export class App {
     this.camera = new Camera(this.scene.spheres);
     this.canvas = /** @type {HTMLCanvasElement} */ (byId('canvas'));
     this.message = byId('message');
-    /** What is measured or pinned. @type {import('./scene.js').Place[]} */
-    this.places = [];
     this.background = /** @type {'own' | 'system' | 'light' | 'dark'} */ (cells.background ? 'own' : 'system');
-    this.measuring = false;
+    this.measuring = new Measuring(this.scene, (text) => this.say(text));
     this.hovered = 0;
     this.system = matchMedia('(prefers-color-scheme: dark)');
   }
@@ -104,13 +101,18 @@ export class App {
 
   /** @param {boolean} draft @returns {import('./webgpu.js').Look} */
   look(draft) {
-    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
+    const level = this.level();
     const slow = draft && this.loop && this.loop.took > 100;
     return {
       lod: level ? { level: slow ? Math.min(level, DRAFT_LEVEL) : level } : { pixels: draft ? DRAFT_PIXELS : PIXELS },
       wireframe: this.checked('wireframe'), occlusion: this.checked('occlusion'), lit: true,
       leastWidth: this.scene.data.least_width, background: this.colors.background, pixelRatio: devicePixelRatio,
     };
+  }
+
+  /** @returns {number} that is chosen; 0: automatic */
+  level() {
+    return LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
   }
 
   /** @param {string} id @returns {boolean} */
@@ -127,7 +129,7 @@ export class App {
     if (how.step) return;
     const pixel = 2 * camera.tan * camera.distance / this.canvas.clientHeight;
     this.bar = showScale(byId('scale'), pixel, this.canvas.clientWidth);
-    this.drawOverlay();
+    this.measuring.draw(byId('overlay'), camera);
     if (!how.draft) this.writeLink();
   }
 
@@ -243,7 +245,7 @@ export class App {
   }
 
   showLevel() {
-    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
+    const level = this.level();
     byId('level-name').textContent = level ? `level ${level}` : 'automatic';
     this.loop?.refresh();
   }
@@ -291,26 +293,12 @@ export class App {
     if (px !== x || py !== y) setTimeout(() => this.hover(px, py), HOVER);
   }
 
-  /** What there is to say of a place. @param {import('./scene.js').Place} place @returns {string} */
-  describe(place) {
-    const { colors, scene } = this, lines = [];
-    if (scene.cells.length > 1) lines.push(scene.cells[place.cell].name);
-    const type = colors.typeOf(place.key);
-    lines.push(place.section < 0 ? type : `${type}, section ${place.section}`);
-    if (place.section >= 0) lines.push(`${place.distance.toFixed(1)} µm along its neurite, radius ${place.radius.toPrecision(2)} µm`);
-    if (colors.scheme.recording) {
-      const share = colors.shareOf(place.key), { title, range: [low, high] } = colors.scale();
-      if (share >= 0) lines.push(`${title}: ${(low + share * (high - low)).toPrecision(4)}`);
-    }
-    return lines.join('\n');
-  }
-
   /** @param {import('./scene.js').Place | null} place @param {number} x @param {number} y */
   tip(place, x, y) {
     const tip = byId('tip');
     tip.hidden = !place;
     if (!place) return;
-    tip.textContent = this.describe(place);
+    tip.textContent = described(place, this.scene, this.colors);
     const { offsetWidth: width, offsetHeight: height } = tip;
     tip.style.left = `${Math.min(x + 14, innerWidth - width - 8)}px`;
     tip.style.top = `${y + 18 + height > innerHeight ? y - height - 10 : y + 18}px`;
@@ -319,24 +307,9 @@ export class App {
   /** @param {number} x @param {number} y */
   async click(x, y) {
     const place = await this.pick(x, y);
-    if (!this.measuring) {
-      this.tip(place, x, y);
-      return;
-    }
-    if (!place) return;
-    this.places = this.places.length === 2 ? [place] : [...this.places, place];
-    this.sayMeasured();
-    this.drawOverlay();
-  }
-
-  sayMeasured() {
-    const [a, b] = this.places;
-    if (!b) {
-      this.say(a ? 'Click where it ends.' : 'Click where it begins.');
-      return;
-    }
-    const way = this.scene.way(a, b), straight = `${this.scene.straight(a, b).toFixed(2)} µm straight`;
-    this.say(way === null ? straight : `${straight}, ${way.toFixed(2)} µm along the tree`);
+    if (!this.measuring.active) this.tip(place, x, y);
+    else if (place) this.measuring.add(place);
+    this.measuring.draw(byId('overlay'), this.camera);
   }
 
   /** Goes near to what is at a place. @param {number} x @param {number} y */
@@ -362,7 +335,7 @@ export class App {
       f: () => look(camera.yaw, camera.pitch), 1: () => look(0, 0), 2: () => look(Math.PI / 2, 0), 3: () => look(0, Math.PI / 2 - 1e-4),
       o: () => flip('orthographic'), w: () => flip('wireframe'), m: () => this.measure(), p: () => this.savePicture(),
       s: () => this.saveMesh(), l: () => this.copyLink(), ' ': () => this.scene.data.recording && !byId('time').hidden && this.play(),
-      escape: () => this.measuring && this.measure(),
+      escape: () => this.measuring.active && this.measure(),
     };
     if (!actions[key]) return false;
     actions[key]();
@@ -371,22 +344,11 @@ export class App {
 
   /** Begins or ends measuring. */
   measure() {
-    this.measuring = !this.measuring;
-    this.places = [];
-    byId('measure').setAttribute('aria-pressed', String(this.measuring));
-    this.canvas.classList.toggle('measuring', this.measuring);
-    if (this.measuring) this.sayMeasured();
-    else this.say('');
-    this.drawOverlay();
-  }
-
-  /** Draws what lies over the picture: what is measured. */
-  drawOverlay() {
-    const { camera, canvas, places } = this;
-    const at = places.map(({ center }) => camera.project(center, canvas.clientWidth, canvas.clientHeight));
-    const shown = /** @type {[number, number][]} */ (at.filter((place) => place));
-    const line = shown.length === 2 ? `<path d="M${shown.join('L')}" stroke="#ff8a00" stroke-width="2"/>` : '';
-    byId('overlay').innerHTML = line + shown.map(([x, y]) => `<circle cx="${x}" cy="${y}" r="4" fill="#ff8a00" stroke="#fff"/>`).join('');
+    const { measuring } = this;
+    measuring.toggle();
+    byId('measure').setAttribute('aria-pressed', String(measuring.active));
+    this.canvas.classList.toggle('measuring', measuring.active);
+    measuring.draw(byId('overlay'), this.camera);
   }
 
   async savePicture() {
@@ -406,7 +368,7 @@ export class App {
   }
 
   async saveMesh() {
-    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)] || SAVED_LEVEL;
+    const level = this.level() || SAVED_LEVEL;
     this.say(`Making the surface at level ${level} …`);
     try {
       const { file, triangles } = await this.mesh(level);
@@ -439,45 +401,16 @@ export class App {
 
   /** Puts what is shown into the address. */
   writeLink() {
-    const { camera, colors } = this, hidden = [...colors.hiddenNow()];
-    const level = LEVELS[+(/** @type {HTMLInputElement} */ (byId('level')).value)];
-    const flags = ['orthographic', 'wireframe'].filter((id) => this.checked(id)).map((id) => id[0]).join('');
-    this.link = written({
-      view: [camera.yaw, camera.pitch, camera.distance, ...camera.target].map(short).join(), colors: colors.scheme.id,
-      palette: colors.palette.name, map: colors.map.name, level: level || null, flags: flags + (this.checked('occlusion') ? '' : 'n'),
-      hide: hidden.join(), background: this.background, frame: colors.frame || null, renderer: read(location.hash).renderer ?? null,
-    });
+    this.link = stateOf(this);
     if (location.hash !== this.link) location.replace(this.link);
   }
 
   /** Shows what the address says. */
   restore() {
-    const state = read(location.hash), { camera, colors, scene } = this;
-    const view = numbers(state.view, 6);
-    if (view && view[2] > 0) {
-      [camera.yaw, camera.pitch, camera.distance] = view;
-      camera.target = [view[3], view[4], view[5]];
-    }
-    const flags = state.flags ?? '';
-    const check = (/** @type {string} */ id, /** @type {boolean} */ on) => { /** @type {HTMLInputElement} */ (byId(id)).checked = on; };
-    check('orthographic', flags.includes('o'));
-    check('wireframe', flags.includes('w'));
-    check('occlusion', !flags.includes('n'));
-    colors.palette = scene.data.palettes.find((/** @type {any} */ p) => p.name === state.palette) ?? colors.palette;
-    colors.map = scene.data.color_maps.find((/** @type {any} */ m) => m.name === state.map) ?? colors.map;
-    if (state.background === 'light' || state.background === 'dark' || state.background === 'system') {
-      this.background = state.background;
-      /** @type {HTMLSelectElement} */ (byId('background')).value = state.background;
-      this.showBackground();
-    }
-    colors.choose(state.colors ?? colors.scheme.id);
-    const hidden = colors.hiddenNow();
-    hidden.clear();
-    for (const index of (state.hide ?? '').split(',')) if (index) hidden.add(+index);
-    colors.frame = Math.min(Math.max(Math.floor(+(state.frame ?? 0)) || 0, 0), Math.max((scene.data.recording?.times.length ?? 1) - 1, 0));
-    /** @type {HTMLInputElement} */ (byId('level')).value = String(Math.max(LEVELS.indexOf(+(state.level ?? 0)), 0));
+    restore(this, location.hash);
+    this.showBackground();
     this.showLevel();
-    this.chooseScheme(colors.scheme.id);
+    this.chooseScheme(this.colors.scheme.id);
   }
 }
 

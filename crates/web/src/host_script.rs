@@ -13,7 +13,7 @@ macro_rules! module {
 }
 
 /// The modules, each after those that it imports from.
-const MODULES: [(&str, &str); 19] = [
+const MODULES: [(&str, &str); 20] = [
     module!("vectors"),
     module!("bytes"),
     module!("scene"),
@@ -28,6 +28,7 @@ const MODULES: [(&str, &str); 19] = [
     module!("webgl"),
     module!("saving"),
     module!("link"),
+    module!("measuring"),
     module!("legend"),
     module!("picture"),
     module!("loop"),

@@ -22,7 +22,7 @@ use neurotess::render::color::ColorMap;
   neurotess html cell.swc -o cell.html
   neurotess html a.swc b.asc -o both.html --color-by neuron
   neurotess html cell.swc -o cell.html --color-by depth --colormap magma --background black
-  neurotess html cell.swc -o cell.html --points spines.csv
+  neurotess html cell.swc -o cell.html --values calcium.csv --points spines.csv
   neurotess html circuit/ -o fires.html --nodes 0-4 --report voltage.h5 --time 0:100:0.5
 
 The page opens from a folder or an e-mail and asks nothing of any server.")]
@@ -39,12 +39,21 @@ pub(crate) struct HtmlArgs {
     /// Title of the page [default: the names of the inputs]
     #[arg(long, value_name = "TEXT")]
     pub(crate) title: Option<String>,
-    /// What colors tell at first [default: type; value, if there is a --report]
+    /// What colors tell at first [default: type; value, if there is a --report or --values]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Colors")]
     pub(crate) color_by: Option<ColorBy>,
     /// Values of a simulation: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", help_heading = "Colors")]
     pub(crate) report: Option<PathBuf>,
+    /// Values of your own for one cell: a table (CSV, TSV) whose first column is sample or section, the
+    /// others values; several columns are named by their times (ms)
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "report",
+        help_heading = "Colors"
+    )]
+    pub(crate) values: Option<PathBuf>,
     /// Time (ms) in the report, or FROM:TO:STEP [default: all of it, in at most 200 steps]
     #[arg(
         long,

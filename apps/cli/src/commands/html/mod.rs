@@ -2,6 +2,7 @@
 
 mod args;
 mod recording;
+mod values;
 
 use std::io::Write;
 
@@ -12,10 +13,11 @@ use neurotess::web::{PageCell, PageMarkers, PageOptions, PageRecording, PageSche
 use serde::Serialize;
 
 use crate::commands::render::{
-    CircuitInstances, MeshedCell, RenderArgs, RenderScene, markers, read_scene, stem,
+    CircuitInstances, ColorBy as CliColorBy, MeshedCell, RenderArgs, RenderScene, markers,
+    read_scene, stem,
 };
 use crate::io::output;
-use crate::report::{Entry, Failed, Reporter, count};
+use crate::report::{Entry, Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
 
 /// Pages are larger only by `--force`: mail takes them, and browsers open them at once.
@@ -35,6 +37,9 @@ struct Document {
 pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
     output::check(&args.out, args.force)?;
+    if args.color_by == Some(CliColorBy::Value) && args.report.is_none() && args.values.is_none() {
+        return usage("--color-by value needs a --report or --values");
+    }
     let render = args.render_args();
     let RenderScene {
         entries,
@@ -124,12 +129,7 @@ impl Content<'_> {
             .zip(&colorings)
             .map(|(&by, coloring)| PageScheme { by, coloring })
             .collect();
-        let recording = match (&self.args.report, self.instances) {
-            (Some(report), Some(instances)) => Some(recording::read(
-                report, self.args, instances, &cells, reporter,
-            )?),
-            _ => None,
-        };
+        let recording = self.recording(&cells, reporter)?;
         let page_cells: Vec<PageCell<'_>> = cells
             .iter()
             .zip(self.placements)
@@ -160,6 +160,20 @@ impl Content<'_> {
             .collect()
     }
 
+    fn recording(
+        &self,
+        cells: &[Cell<'_>],
+        reporter: &Reporter,
+    ) -> anyhow::Result<Option<PageRecording>> {
+        match (&self.args.report, &self.args.values, self.instances) {
+            (Some(report), _, Some(instances)) => {
+                recording::read(report, self.args, instances, cells, reporter).map(Some)
+            }
+            (_, Some(table), _) => values::read(table, self.args.range, cells).map(Some),
+            _ => Ok(None),
+        }
+    }
+
     fn own_colors(&self) -> OwnColors {
         self.render.own_colors()
     }
@@ -170,7 +184,10 @@ impl Content<'_> {
             own_colors: self.own_colors(),
             background: None,
             scale: self.args.colormap.scale(),
-            range: self.args.range.filter(|_| self.args.report.is_none()),
+            range: self
+                .args
+                .range
+                .filter(|_| self.args.report.is_none() && self.args.values.is_none()),
         }
     }
 
