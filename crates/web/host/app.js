@@ -36,6 +36,8 @@ export class App {
     this.background = /** @type {'own' | 'system' | 'light' | 'dark'} */ (cells.background ? 'own' : 'system');
     this.measuring = new Measuring(this.scene, (text) => this.say(text));
     this.hovered = 0;
+    /** What was hidden before the last click on the legend. @type {number[]} */
+    this.hiddenBefore = [];
     this.system = matchMedia('(prefers-color-scheme: dark)');
   }
 
@@ -54,6 +56,7 @@ export class App {
       said = 'Drawn with WebGL 2, since there is no WebGPU here: one level everywhere, no soft shadows.';
     }
     if (!renderer) {
+      for (const id of ['panel', 'legend', 'scale']) byId(id).hidden = true;
       this.say('This browser has neither WebGPU nor WebGL 2, one of which is needed: use a newer one, or turn hardware acceleration on.');
       return;
     }
@@ -136,13 +139,21 @@ export class App {
   /** Colors, legend and what is hidden, as they are now. */
   recolor() {
     this.renderer?.setColors(this.colors.update());
-    showLegend(byId('legend'), this.colors, (index, alone) => this.toggle(index, alone));
+    showLegend(byId('legend'), this.colors, (index, alone, again) => this.toggle(index, alone, again));
     this.loop?.refresh();
   }
 
-  /** Hides or shows an entry of the legend, or all others. @param {number} index @param {boolean} alone */
-  toggle(index, alone) {
+  /**
+   * Hides or shows an entry of the legend, or all others.
+   * @param {number} index @param {boolean} alone @param {boolean} again whether a click before has hidden or shown it
+   */
+  toggle(index, alone, again) {
     const hidden = this.colors.hiddenNow(), all = this.colors.entries().length;
+    if (again) {
+      hidden.clear();
+      for (const before of this.hiddenBefore) hidden.add(before);
+    }
+    this.hiddenBefore = [...hidden];
     if (alone) {
       const isAlone = hidden.size === all - 1 && !hidden.has(index);
       hidden.clear();

@@ -29,7 +29,7 @@ export function ticks([low, high], more) {
 
 /**
  * @param {HTMLElement} element @param {import('./colors.js').Colors} colors
- * @param {(index: number, alone: boolean) => void} toggle
+ * @param {(index: number, alone: boolean, again: boolean) => void} toggle `again`: the second click of two
  */
 export function showLegend(element, colors, toggle) {
   element.replaceChildren(...(colors.isScale() ? scale(colors) : categories(colors, toggle)));
@@ -49,7 +49,7 @@ function dotOf(color) {
 }
 
 /**
- * @param {import('./colors.js').Colors} colors @param {(index: number, alone: boolean) => void} toggle
+ * @param {import('./colors.js').Colors} colors @param {(index: number, alone: boolean, again: boolean) => void} toggle
  * @returns {HTMLElement[]}
  */
 function categories(colors, toggle) {
@@ -62,7 +62,7 @@ function categories(colors, toggle) {
     button.append(dotOf(color), name);
     button.setAttribute('aria-pressed', String(!hidden.has(index)));
     button.title = 'Click to hide or show, double-click or Shift to see it alone';
-    button.onclick = (event) => toggle(index, event.shiftKey || event.detail === 2);
+    button.onclick = (event) => toggle(index, event.shiftKey || event.detail === 2, event.detail === 2);
     made.push(button);
   }
   return made;

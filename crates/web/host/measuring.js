@@ -31,7 +31,8 @@ export class Measuring {
   /** @param {Place} a @param {Place} b @returns {string} */
   told(a, b) {
     const way = this.scene.way(a, b), straight = `${this.scene.straight(a, b).toFixed(2)} µm straight`;
-    return way === null ? straight : `${straight}, ${way.toFixed(2)} µm along the tree`;
+    if (way !== null) return `${straight}, ${way.toFixed(2)} µm along the tree`;
+    return a.cell === b.cell && a.section >= 0 && b.section >= 0 ? `${straight}, in different neurites` : straight;
   }
 
   /** Draws what is measured over the picture. @param {Element} svg @param {import('./camera.js').Camera} camera */

@@ -70,6 +70,8 @@ export function listen(canvas, actions) {
   addEventListener('keydown', (event) => {
     const { target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || target instanceof HTMLInputElement || target instanceof HTMLSelectElement) return;
+    // These press the button that has the focus.
+    if (target instanceof HTMLButtonElement && (event.key === ' ' || event.key === 'Enter')) return;
     const [x, y] = [canvas.clientWidth / 2, canvas.clientHeight / 2], step = event.shiftKey ? 40 : 0.12;
     const arrows = /** @type {Record<string, [number, number]>} */ ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] });
     const arrow = arrows[event.key];

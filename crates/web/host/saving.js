@@ -4,9 +4,33 @@ import { quads } from './selection.js';
 import { ranges } from './ranges.js';
 
 /** Vertices that the card makes at once, and the most triangles of a file. */
-const TOGETHER = 1 << 18, MOST_TRIANGLES = 40e6;
+const TOGETHER = 1 << 18, MOST_TRIANGLES = 20e6;
 /** See even.wgsl. */
 const KIND_STEP = 1 << 21;
+
+/** Numbers of one kind that become more: an array of all numbers of JavaScript would take twice the memory. */
+class Growing {
+  /** @param {Float32Array | Int32Array | Uint32Array} numbers room for the first */
+  constructor(numbers) {
+    this.numbers = numbers;
+    this.count = 0;
+  }
+
+  /** @param {number[]} more */
+  push(...more) {
+    if (this.count + more.length > this.numbers.length) {
+      const Kind = /** @type {any} */ (this.numbers.constructor), larger = new Kind(2 * this.numbers.length);
+      larger.set(this.numbers);
+      this.numbers = larger;
+    }
+    for (const number of more) this.numbers[this.count++] = number;
+  }
+
+  /** @returns {any} */
+  taken() {
+    return this.numbers.subarray(0, this.count);
+  }
+}
 
 /** Finds equal positions. Corners and edges of neighboring patches are computed by the same formulas, so they are equal. */
 class Welder {
@@ -45,7 +69,8 @@ class Welder {
 export async function surface(renderer, scene, level) {
   const { HIGHEST_LEVEL, PATCH_CAP, PATCH_SOMA } = scene.numbers;
   if (2 * level ** 2 * scene.slots > MOST_TRIANGLES) throw new Error(`level ${level} is too fine for a file of this page: choose a lower one`);
-  const vertices = [], sections = [], triangles = [];
+  const room = 1 << 16, vertices = new Growing(new Float32Array(room)), sections = new Growing(new Int32Array(room));
+  const triangles = new Growing(new Uint32Array(room));
   let count = 0, cell = -1, welder = new Welder(1);
   for (const part of scene.parts) {
     if (part.cell !== cell) {
@@ -80,7 +105,7 @@ export async function surface(renderer, scene, level) {
       }
     }
   }
-  return { vertices: Float32Array.from(vertices), sections: Int32Array.from(sections), triangles: Uint32Array.from(triangles) };
+  return { vertices: vertices.taken(), sections: sections.taken(), triangles: triangles.taken() };
 }
 
 /** @param {{ vertices: Float32Array, sections: Int32Array, triangles: Uint32Array }} surface @returns {Blob} a binary PLY file */

@@ -1,6 +1,7 @@
 //! Pages in a browser: the same surface, the same picture and the same answers as the library's.
 
 use std::io::Write;
+use std::process::Command;
 
 use glam::DVec3;
 use neurotess_color::{ColorBy, coloring};
@@ -342,6 +343,51 @@ fn without_webgpu_a_page_draws_picks_and_saves_the_same() {
     assert_hides_by_legend(&mut opened);
     assert_saves_what_the_library_exports(&mut opened);
     opened.assert_silent();
+}
+
+/// The need of the test of types.
+fn typescript() -> Result<(), String> {
+    let there = Command::new("tsc").arg("--version").output();
+    let there = there.is_ok_and(|output| output.status.success());
+    there
+        .then_some(())
+        .ok_or_else(|| "no TypeScript: npm install -g typescript".into())
+}
+
+#[neurotess_testing::test(needs(full, typescript))]
+fn types_of_the_host_are_right() {
+    let host = neurotess_testing::workspace().join("crates/web/host");
+    let checked = Command::new("tsc")
+        .arg("-p")
+        .arg(host)
+        .output()
+        .expect("tsc");
+    let said = String::from_utf8_lossy(&checked.stdout);
+    assert!(checked.status.success(), "{said}");
+}
+
+#[neurotess_testing::test(needs(full, chromium))]
+fn a_second_click_shows_an_entry_alone_and_a_third_and_fourth_show_all() {
+    let mut opened = opened("#renderer=webgl");
+    let mut hidden_after = |detail: u32| {
+        opened.browser.evaluate(&format!(
+            "(() => {{
+               const button = document.querySelectorAll('#legend button')[1];
+               button.dispatchEvent(new MouseEvent('click', {{ detail: {detail} }}));
+               return [...app.colors.hiddenNow()].sort();
+             }})()"
+        ))
+    };
+    let all = [1, 2, 1, 2].map(&mut hidden_after);
+    let others: Vec<i64> = vec![0, 2];
+    assert_eq!(all[0], serde_json::json!([1]));
+    assert_eq!(all[1].as_array().map(Vec::len), Some(others.len()));
+    assert!(
+        all[1]
+            .as_array()
+            .is_some_and(|hidden| !hidden.contains(&1.into()))
+    );
+    assert_eq!(all[3], serde_json::json!([]));
 }
 
 #[neurotess_testing::test(needs(full, chromium))]
