@@ -423,3 +423,24 @@ fn paths_sway_as_refined_ones_do() {
     wanted.f32("MOST_SWAY", MOST_SWAY);
     assert!(neurotess_refine::gpu::constants().contains(&wanted));
 }
+
+#[test]
+fn shaders_for_other_hosts_are_valid_in_every_language() {
+    use crate::output::host;
+    let all = host::drawing_shaders()
+        .into_iter()
+        .chain(host::id_shaders());
+    for shader in all.chain([host::marker_shader(), host::finishing_shader()]) {
+        testing::check(&shader);
+    }
+    let numbers = host::numbers();
+    for name in [
+        "CLUSTER",
+        "SECTION",
+        "BUCKETS",
+        "POINT_KIND_SHIFT",
+        "CATEGORY_BIT",
+    ] {
+        assert!(numbers.iter().any(|(known, _)| known == name), "{name}");
+    }
+}

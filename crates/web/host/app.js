@@ -18,6 +18,8 @@ const PIXELS = 0.5, DRAFT_PIXELS = 2, DRAFT_LEVEL = 3;
 /** Milliseconds between two questions what is under the pointer. */
 const HOVER = 70;
 const BACKGROUNDS = { light: /** @type {import('./colors.js').Rgb} */ ([255, 255, 255]), dark: /** @type {import('./colors.js').Rgb} */ ([21, 23, 27]) };
+/** Most pixels of a picture, half as many on phones: each takes some 120 bytes of the card. */
+const MOST_PIXELS = 4e6;
 /** Level of meshes that are saved while the level is automatic, as of the command. */
 const SAVED_LEVEL = 4;
 
@@ -36,6 +38,8 @@ export class App {
     this.background = /** @type {'own' | 'system' | 'light' | 'dark'} */ (cells.background ? 'own' : 'system');
     this.measuring = new Measuring(this.scene, (text) => this.say(text));
     this.hovered = 0;
+    /** Pixels of the canvas for each of the page. */
+    this.ratio = 1;
     /** What was hidden before the last click on the legend. @type {number[]} */
     this.hiddenBefore = [];
     this.system = matchMedia('(prefers-color-scheme: dark)');
@@ -53,7 +57,7 @@ export class App {
     let said = '';
     if (!renderer) {
       renderer = WebGlRenderer.open(this.canvas, this.scene, this.shaders, failed);
-      said = 'Drawn with WebGL 2, since there is no WebGPU here: one level everywhere, no soft shadows.';
+      said = 'Drawn with WebGL 2, since there is no WebGPU here: one level everywhere.';
     }
     if (!renderer) {
       for (const id of ['panel', 'legend', 'scale']) byId(id).hidden = true;
@@ -61,7 +65,8 @@ export class App {
       return;
     }
     this.renderer = renderer;
-    const steps = renderer instanceof WebGpuRenderer ? STEPS : 1;
+    // WebGL draws all of a fine picture in the first of two steps: one is a draft.
+    const steps = renderer instanceof WebGpuRenderer ? STEPS : 2;
     this.loop = new Loop((how) => this.draw(how), () => /** @type {any} */ (this.renderer).done(), steps);
     this.say(said);
     this.makePanel();
@@ -95,8 +100,9 @@ export class App {
   }
 
   resize() {
-    const { canvas } = this, ratio = devicePixelRatio;
-    const size = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(Math.round(n * ratio), 1));
+    const { canvas } = this, most = matchMedia('(pointer: coarse)').matches ? MOST_PIXELS / 2 : MOST_PIXELS;
+    this.ratio = Math.min(devicePixelRatio, Math.sqrt(most / (canvas.clientWidth * canvas.clientHeight + 1)));
+    const size = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(Math.round(n * this.ratio), 1));
     if (canvas.width === size[0] && canvas.height === size[1]) return false;
     [canvas.width, canvas.height] = size;
     return true;
@@ -109,7 +115,7 @@ export class App {
     return {
       lod: level ? { level: slow ? Math.min(level, DRAFT_LEVEL) : level } : { pixels: draft ? DRAFT_PIXELS : PIXELS },
       wireframe: this.checked('wireframe'), occlusion: this.checked('occlusion'), lit: true,
-      leastWidth: this.scene.data.least_width, background: this.colors.background, pixelRatio: devicePixelRatio,
+      leastWidth: this.scene.data.least_width, background: this.colors.background, pixelRatio: this.ratio,
     };
   }
 
@@ -205,7 +211,6 @@ export class App {
     press('copy', () => this.act('l'));
     press('picture', () => this.act('p'));
     press('mesh', () => this.act('s'));
-    if (!(this.renderer instanceof WebGpuRenderer)) /** @type {HTMLElement} */ (byId('occlusion').parentElement).hidden = true;
     this.chooseScheme(colors.scheme.id);
     const { recording } = scene.data;
     if (recording?.times.length > 1) {
@@ -285,7 +290,7 @@ export class App {
 
   /** What is drawn at a place of the page. @param {number} x @param {number} y @returns {Promise<import('./scene.js').Place | null>} */
   async pick(x, y) {
-    const { renderer, camera } = this, ratio = devicePixelRatio;
+    const { renderer, camera, ratio } = this;
     const key = renderer ? await renderer.pick(camera, this.look(false), x * ratio, y * ratio) : -1;
     return key < 0 || key >= this.scene.keys ? null : this.scene.place(key);
   }
@@ -367,7 +372,7 @@ export class App {
     const { canvas, colors } = this;
     // A canvas of WebGPU can be read only in the task in which it was drawn.
     this.drawWhole();
-    const picture = drawn(canvas, colors, this.bar, devicePixelRatio);
+    const picture = drawn(canvas, colors, this.bar, this.ratio);
     picture.toBlob((blob) => blob && save(blob, `${this.fileName()}.png`));
   }
 

@@ -7,6 +7,7 @@ import { nearest } from './webgpu.js';
 import { Struct, baseFields, clipFromRelative, rows, unit } from './shaders.js';
 import { quads } from './selection.js';
 import { ranges } from './ranges.js';
+import { Shadows } from './shadows.js';
 
 /** Numbers in a row of a texture: see texture_source.rs. */
 const ROW = 1024;
@@ -60,6 +61,8 @@ export class WebGlRenderer {
     this.thickest = scene.radius.reduce((most, radius) => Math.max(most, radius), 0) || 5;
     /** @type {WebGLFramebuffer | undefined} */
     this.ids = undefined;
+    /** Made when they are first asked for. @type {Shadows | undefined} */
+    this.shadows = undefined;
     this.markers = scene.data.markers ? new WebGlMarkers(gl, scene, this.program(dots, kept)) : null;
     gl.enable(gl.CULL_FACE);
     gl.enable(gl.DEPTH_TEST);
@@ -84,7 +87,7 @@ export class WebGlRenderer {
       throw new Error([...shaders.map((shader) => gl.getShaderInfoLog(shader)), gl.getProgramInfoLog(program)].join(' '));
     }
     gl.useProgram(program);
-    for (const name of [...vertex.names.even ?? [], ...vertex.names.shade ?? [], ...fragment.names.shade ?? []]) {
+    for (const name of ['even', 'shade', 'finish'].flatMap((own) => [...vertex.names[own] ?? [], ...fragment.names[own] ?? []])) {
       const block = gl.getUniformBlockIndex(program, name);
       if (block !== gl.INVALID_INDEX) gl.uniformBlockBinding(program, block, 0);
     }
@@ -224,7 +227,7 @@ export class WebGlRenderer {
    * @param {import('./camera.js').Camera} camera @param {import('./webgpu.js').Look} look
    * @param {{ step: number, steps: number, scale: number }} how
    */
-  draw(camera, look, { step }) {
+  draw(camera, look, { step, steps }) {
     if (step) return;
     const { gl, canvas } = this, view = camera.view(canvas.height), aspect = canvas.width / canvas.height;
     this.setLevel(this.levelOf(view, look, camera.distance));
@@ -238,6 +241,9 @@ export class WebGlRenderer {
     this.drawAll(this.programs.draw, view, look, aspect);
     gl.disable(gl.POLYGON_OFFSET_FILL);
     if (look.wireframe) this.drawAll(this.programs.draw, view, look, aspect, [0.03, 0.03, 0.03, 1]);
+    if (!look.occlusion || steps < 2) return;
+    const shadows = this.shadows ??= new Shadows(gl, this.shaders, (vertex, fragment) => this.program(vertex, fragment));
+    shadows.darken(view, [canvas.width, canvas.height], () => this.drawAll(shadows.facing, view, look, aspect), (struct) => this.write(struct));
   }
 
   async complete() {}

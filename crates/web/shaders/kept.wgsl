@@ -119,3 +119,24 @@ fn fragment_id(in: Varying) -> @location(0) vec4<f32> {
     let id = u32(in.color.w + 0.5) + 1u;
     return vec4(vec3<f32>(vec3(id, id >> 8u, id >> 16u) & vec3(0xffu)) / 255.0, 1.0);
 }
+
+struct Facing {
+    // Normal in the view, mapped from -1..1 to 0..1.
+    @location(0) normal: vec4<f32>,
+    // Depth (µm), not 0, as the bytes of an f32.
+    @location(1) depth: vec4<f32>,
+}
+
+// What shadows.wgsl needs to know.
+@fragment
+fn fragment_facing(in: Varying) -> Facing {
+    if in.normal.w <= 0.0 {
+        discard;
+    }
+    let axes = mat3x3(shade.right, shade.up, shade.backward);
+    let n = normalize(in.normal.xyz) * axes;
+    let depth = -dot(in.relative.xyz, shade.backward);
+    let bits = bitcast<u32>(select(depth, 1e-20, depth == 0.0));
+    let bytes = vec4(bits, bits >> 8u, bits >> 16u, bits >> 24u) & vec4(0xffu);
+    return Facing(vec4(n * 0.5 + 0.5, 1.0), vec4<f32>(bytes) / 255.0);
+}

@@ -13,7 +13,7 @@ macro_rules! module {
 }
 
 /// The modules, each after those that it imports from.
-const MODULES: [(&str, &str); 20] = [
+const MODULES: [(&str, &str); 21] = [
     module!("vectors"),
     module!("bytes"),
     module!("scene"),
@@ -25,6 +25,7 @@ const MODULES: [(&str, &str); 20] = [
     module!("ranges"),
     module!("markers"),
     module!("webgpu"),
+    module!("shadows"),
     module!("webgl"),
     module!("saving"),
     module!("link"),

@@ -28,6 +28,7 @@ const EXPAND: WgslFile = file!("expand.wgsl");
 const CAPTURED: WgslFile = file!("captured.wgsl");
 const NOTHING: WgslFile = file!("nothing.wgsl");
 const KEPT: WgslFile = file!("kept.wgsl");
+const SHADOWS: WgslFile = file!("shadows.wgsl");
 const PRESENTED: WgslFile = file!("presented.wgsl");
 
 /// All that the host needs to make pipelines.
@@ -77,12 +78,18 @@ pub fn modules() -> Vec<(String, Shader)> {
     all
 }
 
-/// GLSL ES 3.00 of the two programs of WebGL, from WGSL: vertices at one level, and their drawing.
-fn programs() -> Result<[(&'static str, GlslProgram); 4], WebError> {
+/// GLSL ES 3.00 of the programs of WebGL, from WGSL: vertices at one level, their drawing, soft shadows.
+fn programs() -> Result<[(&'static str, GlslProgram); 8], WebError> {
     let capture = host::composed("captured", &[EVEN, CAPTURED]);
     let text = packed_in_texture(&capture.text);
     let kept = host::composed("kept", &[KEPT]).text;
+    let shadows = host::composed("shadows", &[SHADOWS]).text;
+    let shadow = |entry| glsl("shadows", [&shadows; 2], ["corner", entry]);
     Ok([
+        ("facing", glsl("kept", [&kept; 2], ["vertex", "fragment_facing"])?),
+        ("occlude", shadow("occlude")?),
+        ("blur", shadow("blur_rows")?),
+        ("darken", shadow("darken")?),
         (
             "capture",
             glsl("captured", [&text, NOTHING.text], ["capture", "nothing"])?,
@@ -100,6 +107,15 @@ fn entry_points() -> Vec<&'static str> {
                   expand corner show";
     selection.chain(others.split_whitespace()).collect()
 }
+
+/// Stages that are in the page once: the vertex stages of `kept` (or else `occlude`) and the fragment stage of `kept`.
+const SHARED: [(&str, bool); 5] = [
+    ("ids", true),
+    ("facing", true),
+    ("blur", true),
+    ("darken", true),
+    ("dots", false),
+];
 
 impl PageShaders {
     pub(crate) fn new() -> Result<Self, WebError> {
@@ -129,12 +145,18 @@ impl PageShaders {
         let mut programs = BTreeMap::from(programs()?);
         let kept = host::composed("kept", &[KEPT]);
         layouts.insert("Kept", layout(&kept, "Kept")?);
-        // Both stages are those of `kept`.
-        if let Some(ids) = programs.get_mut("ids") {
-            ids.vertex.clear();
-        }
-        if let Some(dots) = programs.get_mut("dots") {
-            dots.fragment.clear();
+        let shadows = host::composed("shadows", &[SHADOWS]);
+        layouts.insert("Shadows", layout(&shadows, "Shadows")?);
+        // Stages that others have: see `SHARED`.
+        for (name, is_vertex) in SHARED {
+            if let Some(program) = programs.get_mut(name) {
+                let stage = if is_vertex {
+                    &mut program.vertex
+                } else {
+                    &mut program.fragment
+                };
+                stage.clear();
+            }
         }
         let entries = host::selection_entries().iter();
         let entries =

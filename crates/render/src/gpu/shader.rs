@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 49] = [
+pub(crate) const FILES: [WgslFile; 50] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources", "octahedral.wgsl"),
@@ -59,6 +59,7 @@ pub(crate) const FILES: [WgslFile; 49] = [
     file!("shading", "finish.wgsl"),
     file!("shading", "blocks.wgsl"),
     file!("shading", "occlusion.wgsl"),
+    file!("shading", "obscurance.wgsl"),
     file!("shading", "gather.wgsl"),
     file!("shading", "accumulate.wgsl"),
     file!("shading", "mask.wgsl"),

@@ -8,7 +8,7 @@ use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile};
 
 use crate::gpu::shader;
 use crate::output::ids::ids_shader;
-use crate::shading::finish::{Last, finish_shader};
+use crate::shading::finish::{Last, finish_shader, occlusion_constants};
 use crate::shading::shade::{GUARD, HALF_WIDTH, KEY, PipelineKey, constants, shade_shader};
 use crate::sources::adaptive::grids::{GRID_SIZE, VERTICES_TOGETHER};
 use crate::sources::adaptive::passes::{ENTRIES, modules};
@@ -77,6 +77,7 @@ pub fn composed(name: &'static str, files: &[WgslFile]) -> Shader {
         samples: 1,
         ..PipelineKey::default()
     }));
+    parts.constants.extend(&occlusion_constants());
     shader::shader(name, &parts)
 }
 

@@ -219,6 +219,7 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "expand",
         "vertices",
         "surface_id",
+        "surface_key",
         "vertex_keys",
         "prerefined",
         "marker_id",

@@ -1,7 +1,7 @@
 //! The passes after the drawing: ambient occlusion, and the bytes of the picture.
 
 use bytemuck::{Pod, Zeroable};
-use neurotess_refine::wgsl::{Shader, ShaderParts};
+use neurotess_refine::wgsl::{Constants, Shader, ShaderParts};
 
 use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture_binding, uniform};
 use crate::gpu::device::Gpu;
@@ -232,10 +232,17 @@ pub(crate) fn finish_shader(samples: u32, last: Last) -> Shader {
         parts.constants.flag("MULTISAMPLED");
     }
     parts.constants.u32("SAMPLES", samples);
-    parts.constants.u32("TAPS", TAPS);
-    parts.constants.f32("STRENGTH", STRENGTH);
-    parts.constants.i32("BLUR", BLUR as i32);
+    parts.constants.extend(&occlusion_constants());
     shader::shader("finish", &parts)
+}
+
+/// Constants of obscurance.wgsl.
+pub(crate) fn occlusion_constants() -> Constants {
+    let mut constants = Constants::default();
+    constants.u32("TAPS", TAPS);
+    constants.f32("STRENGTH", STRENGTH);
+    constants.i32("BLUR", BLUR as i32);
+    constants
 }
 
 /// Group 1 of the passes that list blocks.

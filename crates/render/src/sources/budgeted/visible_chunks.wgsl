@@ -276,7 +276,7 @@ fn soma_vertex(visible_chunk: VisibleChunk, index: u32, corner: u32) -> SurfaceV
         let x = (f32(index % side) + grid.x) / f32(side);
         let y = (f32((index / side) % side) + grid.y) / f32(side);
         // Evaluates every edge in the same direction for both its quads.
-        let sides = vec4<u32>(EDGE_SOMA) | SIDE_REVERSED * vec4<u32>(vertices.xywx > vertices.yzzw);
+        let sides = vec4<u32>(EDGE_SOMA) | (SIDE_REVERSED * vec4<u32>(vertices.xywx > vertices.yzzw));
         let shape = PatchShape(
             PATCH_SOMA,
             soma_corner(chunk, vertices.x),
