@@ -342,6 +342,7 @@ export class App {
     const { camera } = this;
     const look = (/** @type {number} */ yaw, /** @type {number} */ pitch) => {
       [camera.yaw, camera.pitch] = [yaw, pitch];
+      camera.orthographic = this.checked('orthographic');
       camera.fit(this.aspect(), this.covered());
       this.loop?.change();
     };

@@ -81,6 +81,10 @@ export class Camera {
   fit(aspect, covered, spheres = this.spheres) {
     if (!spheres.length) return;
     const { right, up, backward } = this.axes();
+    if (this.orthographic) {
+      this.fitFlat(aspect, covered, spheres);
+      return;
+    }
     const free = 1 - 2 * MARGIN, across = this.tan * aspect;
     // Where the eye must be along each axis, and how far, so that the planes on both sides touch the spheres.
     const touch = (/** @type {Vector} */ axis, /** @type {number} */ lowTan, /** @type {number} */ highTan) => {
@@ -103,6 +107,23 @@ export class Camera {
     const z = Math.min(middle, nearest - 1e-6, eye - 1e-3);
     this.target = along(along(along([0, 0, 0], right, x), up, y), backward, z);
     this.distance = eye - z;
+  }
+
+  /**
+   * The same without perspective.
+   * @param {number} aspect @param {number} covered @param {{ center: Vector, radius: number }[]} spheres
+   */
+  fitFlat(aspect, covered, spheres) {
+    const { right, up, backward } = this.axes(), free = 1 - 2 * MARGIN;
+    const [x, y, z] = [right, up, backward].map((axis) => {
+      const places = spheres.map(({ center }) => dot(center, axis));
+      const low = Math.min(...places.map((place, k) => place - spheres[k].radius));
+      const high = Math.max(...places.map((place, k) => place + spheres[k].radius));
+      return { middle: (low + high) / 2, half: (high - low) / 2 };
+    });
+    const height = Math.max(y.half / free, x.half / aspect / (free - covered));
+    this.target = along(along(along([0, 0, 0], right, x.middle + covered * aspect * height), up, y.middle), backward, z.middle);
+    this.distance = height / this.tan;
   }
 
   /** @param {number} right radians @param {number} up radians */

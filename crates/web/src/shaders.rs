@@ -86,7 +86,10 @@ fn programs() -> Result<[(&'static str, GlslProgram); 8], WebError> {
     let shadows = host::composed("shadows", &[SHADOWS]).text;
     let shadow = |entry| glsl("shadows", [&shadows; 2], ["corner", entry]);
     Ok([
-        ("facing", glsl("kept", [&kept; 2], ["vertex", "fragment_facing"])?),
+        (
+            "facing",
+            glsl("kept", [&kept; 2], ["vertex", "fragment_facing"])?,
+        ),
         ("occlude", shadow("occlude")?),
         ("blur", shadow("blur_rows")?),
         ("darken", shadow("darken")?),

@@ -38,3 +38,18 @@ fn a_cell_that_fails_leaves_no_page() {
     work.run("html broken.swc -o broken.html").exits(1);
     assert!(!work.path("broken.html").exists());
 }
+
+#[neurotess_testing::test]
+fn own_values_come_from_a_table() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.file("v.csv", "section,0,0.5\n0,-65,-60\n");
+    work.run("html cell.swc -o v.html --values v.csv").exits(0);
+    work.file("wrong.csv", "name,value\n1,2\n");
+    let run = work.run("html cell.swc -o no.html --values wrong.csv");
+    let told = run.exits(1).stderr();
+    assert!(told.contains("wrong.csv:1: the first column"), "{told}");
+    work.run("html cell.swc -o no.html --color-by value")
+        .exits(2);
+    assert!(!work.path("no.html").exists());
+}
