@@ -16,7 +16,7 @@ use crate::third_party;
 const LICENSES: &str = "bindings/python/LICENSE-THIRD-PARTY.txt";
 
 /// The largest wheel (bytes) that is fetched without a thought.
-const MOST_BYTES: u64 = 20 << 20;
+const MAX_BYTES: u64 = 20 << 20;
 
 /// What a fresh environment must be able to do.
 const TRIAL: &str = "
@@ -55,9 +55,9 @@ pub(crate) fn run_all(from_source: bool) -> anyhow::Result<()> {
     steps.step("wheel", || {
         wheel = build(&python, &folder)?;
         let bytes = fs::metadata(&wheel)?.len();
-        if bytes > MOST_BYTES {
+        if bytes > MAX_BYTES {
             bail!(
-                "{} has {bytes} bytes, more than {MOST_BYTES}",
+                "{} has {bytes} bytes, more than {MAX_BYTES}",
                 wheel.display()
             );
         }

@@ -61,7 +61,7 @@ use writing::Writing;
 /// Fewest points of tracings whose meshes were missing for a cache to be written: fewer are meshed within a
 /// second, and would only leave files in the folders of small circuits. In an unoptimized build, 20 cells of 5,000
 /// points take 0.4 s on two cores.
-pub const LEAST_POINTS: usize = 100_000;
+pub const MIN_POINTS: usize = 100_000;
 
 /// How many proxies are computed in the time of a mesh, about: in a profile of opening 1,000 cells of 5,000 points,
 /// meshes took 75 % of the time, proxies 8 %.
@@ -163,7 +163,7 @@ impl Cache {
         let files: Vec<OldFile> = paths.into_iter().map(open).collect();
         let targets = files.iter().filter(|file| file.ours);
         let targets = targets.map(|file| file.path.clone()).collect();
-        let mut writing = Writing::new(targets, LEAST_POINTS);
+        let mut writing = Writing::new(targets, MIN_POINTS);
         if files.iter().any(|file| file.ours && file.unusable) {
             writing.insist();
         }
@@ -178,7 +178,7 @@ impl Cache {
         }
     }
 
-    /// The same cache, which is written if meshes of as many points were missing, instead of [`LEAST_POINTS`].
+    /// The same cache, which is written if meshes of as many points were missing, instead of [`MIN_POINTS`].
     #[must_use]
     pub fn with_least_points(self, points: usize) -> Self {
         lock(&self.writing).set_least_points(points);

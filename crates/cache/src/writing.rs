@@ -11,7 +11,7 @@ use crate::file::FileWriter;
 use crate::key::Key;
 
 /// Largest file in which entries are kept that were not asked for; the oldest are left out.
-const MOST_KEPT: u64 = 4 << 30;
+const MAX_KEPT: u64 = 4 << 30;
 
 /// New entries, and the file that they go to.
 #[derive(Debug)]
@@ -157,7 +157,7 @@ fn keep(
             for key in old.keys() {
                 let fits = old
                     .length(key)
-                    .is_some_and(|length| file.place() + length <= MOST_KEPT);
+                    .is_some_and(|length| file.place() + length <= MAX_KEPT);
                 let due = used.contains(key) == of_now && (of_now || fits);
                 if !due || !kept.insert(*key) {
                     continue;

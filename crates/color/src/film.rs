@@ -8,7 +8,7 @@ use crate::recording::{Recording, RecordingError};
 use crate::visible::{VisibleValues, fractions};
 
 /// Most pixels of a picture that is held as a whole, with its weights: larger ones are drawn anew.
-const MOST_PIXELS: u64 = 1 << 24;
+const MAX_PIXELS: u64 = 1 << 24;
 
 /// A static picture, and where a recording has the values of what shows in it.
 pub struct Film {
@@ -32,7 +32,7 @@ pub enum FilmError {
 impl Film {
     /// Whether pictures of this size (pixels) are not too large for it.
     pub fn holds([width, height]: [u32; 2]) -> bool {
-        u64::from(width) * u64::from(height) <= MOST_PIXELS
+        u64::from(width) * u64::from(height) <= MAX_PIXELS
     }
 
     /// A film of a recording. `range`: values at both ends of the scale; `decay`: as in

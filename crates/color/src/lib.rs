@@ -61,4 +61,4 @@ pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};
 pub use traces::TracedCompartment;
 #[cfg(feature = "circuit")]
 pub use visible::{VisibleValues, fractions};
-pub use vision::{ClosestColors, LEAST_DIFFERENCE, Vision, closest, difference};
+pub use vision::{ClosestColors, MIN_DIFFERENCE, Vision, closest, difference};

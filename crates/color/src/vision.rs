@@ -16,7 +16,7 @@ use neurotess_render::color::{Rgb, linear};
 /// palette that Okabe and Ito made for the color-blind, green and reddish purple in deuteranopia, is 0.076
 /// apart, so that palette passes; pairs of NeuroMorpho.org's red and green (0.052) and of Tableau's ten
 /// colors (down to 0.007) do not.
-pub const LEAST_DIFFERENCE: f32 = 0.07;
+pub const MIN_DIFFERENCE: f32 = 0.07;
 
 /// How colors are seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ pub struct ClosestColors {
     pub vision: Vision,
     /// How far they are apart (OKLab).
     pub difference: f32,
-    /// Number of pairs that are less than [`LEAST_DIFFERENCE`] apart in some vision.
+    /// Number of pairs that are less than [`MIN_DIFFERENCE`] apart in some vision.
     pub alike: usize,
 }
 
@@ -143,7 +143,7 @@ pub fn closest(entries: &[(Rgb, String)]) -> Option<ClosestColors> {
                     closest = Some((apart, vision, [first, second]));
                 }
             }
-            alike += usize::from(least < LEAST_DIFFERENCE);
+            alike += usize::from(least < MIN_DIFFERENCE);
         }
     }
     let (difference, vision, pair) = closest?;

@@ -7,7 +7,7 @@ use neurotess_morphology::{Measures, Morphology};
 use crate::Warning;
 
 /// By what share a length or a radius may change unsaid: outlines of spheres have corners, and numbers are rounded.
-const MOST_CHANGED: f64 = 1e-3;
+const MAX_CHANGED: f64 = 1e-3;
 
 /// Losses in writing, one per kind.
 #[derive(Default)]
@@ -91,7 +91,7 @@ impl Losses {
                 [before.soma.radius, after.soma.radius],
             ),
         ] {
-            if (before - after).abs() > MOST_CHANGED * before.abs().max(after.abs()) {
+            if (before - after).abs() > MAX_CHANGED * before.abs().max(after.abs()) {
                 let message = format!("{what} is {after:.4} µm in the copy instead of {before:.4}");
                 self.add(code, &message, 1);
             }

@@ -3,7 +3,7 @@
 use neurotess_morphology::Morphology;
 
 /// Most decimals tried before all that a number has are written.
-const MOST_DECIMALS: usize = 12;
+const MAX_DECIMALS: usize = 12;
 
 /// Appends the shortest decimal that reads back as `value` relative to `origin`.
 pub(crate) fn decimal(text: &mut String, value: f32, origin: f64) {
@@ -23,7 +23,7 @@ pub(crate) fn decimal(text: &mut String, value: f32, origin: f64) {
         }
         text.truncate(start);
     } else {
-        for decimals in 0..=MOST_DECIMALS {
+        for decimals in 0..=MAX_DECIMALS {
             let _ = write!(text, "{exact:.decimals$}");
             if same(&text[start..]) {
                 return;

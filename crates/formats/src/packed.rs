@@ -11,7 +11,7 @@ use crate::Fault;
 const GZIP: &[u8] = b"\x1f\x8b";
 /// Tracings become five times smaller; a file that unpacks to more than so many times its size, and to more than
 /// [`SMALL`], is made to fill memory.
-const MOST_RATIO: u64 = 200;
+const MAX_RATIO: u64 = 200;
 /// Bytes that any file may unpack to.
 const SMALL: u64 = 1 << 26;
 
@@ -20,7 +20,7 @@ pub(crate) fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, Fault> {
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }
-    let most = SMALL.max(MOST_RATIO.saturating_mul(bytes.len() as u64));
+    let most = SMALL.max(MAX_RATIO.saturating_mul(bytes.len() as u64));
     let mut content = Vec::new();
     let mut unpacking = MultiGzDecoder::new(&*bytes).take(most + 1);
     match unpacking.read_to_end(&mut content) {

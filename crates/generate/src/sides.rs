@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use glam::DVec2;
 
 /// No edge is cut into more pieces.
-const MOST_PIECES: f64 = 64.0;
+const MAX_PIECES: f64 = 64.0;
 
 /// How many sides the polygons around neurites get when the mesh is refined: each ring has four edges, cut into
 /// pieces.
@@ -54,7 +54,7 @@ impl Sides {
                 (FRAC_PI_2 * radius / piece).round()
             }
         };
-        pieces.clamp(1.0, MOST_PIECES) as u32
+        pieces.clamp(1.0, MAX_PIECES) as u32
     }
 }
 

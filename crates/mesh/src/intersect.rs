@@ -161,7 +161,7 @@ impl Limits {
 }
 
 /// Most blocks in a batch; the first has one. Enough for many threads, few enough to stop soon.
-const MOST_BATCH: u64 = 256;
+const MAX_BATCH: u64 = 256;
 
 fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() -> bool) -> Search {
     let triangles = triangles(positions, faces);
@@ -200,7 +200,7 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() ->
         next = end;
         // As many as what is left allows, if they are like those before.
         let each = looked_at / next as u64 + 1;
-        batch = ((limits.looked_at - looked_at.min(limits.looked_at)) / each).clamp(1, MOST_BATCH)
+        batch = ((limits.looked_at - looked_at.min(limits.looked_at)) / each).clamp(1, MAX_BATCH)
             as usize;
     }
     pairs.par_sort_unstable();

@@ -5,7 +5,7 @@ use glam::{Mat3, Vec3};
 use crate::CoarseMesh;
 
 /// Radii around each traced point that a surface reaches at most.
-const MOST_RADII: f32 = 2.0;
+const MAX_RADII: f32 = 2.0;
 /// Rounding of a box's sides, as a share of the greatest coordinate.
 const ROUNDING: f32 = 1e-5;
 
@@ -76,7 +76,7 @@ impl Extent {
 impl CoarseMesh {
     /// The box that the surface is within at any level: around all traced points, each with two radii.
     pub fn reach(&self) -> Extent {
-        self.around_tracing(MOST_RADII)
+        self.around_tracing(MAX_RADII)
     }
 
     /// The box around all traced points, each with so many radii.

@@ -29,7 +29,7 @@ pub struct Walled {
 }
 
 /// Vertices of a loop that are joined to the middle of a disk; more get a ring of half as many in between.
-const MOST_SPOKES: usize = 12;
+const MAX_SPOKES: usize = 12;
 
 /// How far a seed is from its wall, of the wall's radius.
 const SEED: f32 = 0.1;
@@ -255,7 +255,7 @@ impl Disk {
             .map(|&v| Corner::Outer(v))
             .zip(outer)
             .collect();
-        while ring.len() > MOST_SPOKES {
+        while ring.len() > MAX_SPOKES {
             ring = disk.step_inwards(&ring, middle);
         }
         let center = disk.push(middle).0;

@@ -8,12 +8,12 @@ use glam::{DVec3, IVec3};
 pub(crate) const REACH: f64 = 5.0;
 
 /// Least side of a cell of the grid (µm).
-const LEAST_CELL: f64 = 4.0;
+const MIN_CELL: f64 = 4.0;
 /// Cells that a link of mean length goes through at most: tracings in another unit than they should be would fill
 /// all memory.
-const MOST_CELLS: f64 = 8.0;
+const MAX_CELLS: f64 = 8.0;
 /// Cells along a side of what is searched at most.
-const MOST_SHELLS: i32 = 16;
+const MAX_SHELLS: i32 = 16;
 
 /// Links in a grid, each in all cells that its axis goes through.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Links {
         let all: Vec<Link> = all.into_iter().collect();
         let length: f64 = all.iter().map(Link::length).filter(|n| n.is_finite()).sum();
         let mut links = Self {
-            side: LEAST_CELL.max(length / (MOST_CELLS * all.len().max(1) as f64)),
+            side: MIN_CELL.max(length / (MAX_CELLS * all.len().max(1) as f64)),
             cells: HashMap::new(),
             links: Vec::with_capacity(all.len()),
             widest: 0.0,
@@ -82,7 +82,7 @@ impl Links {
             return None;
         }
         let mut best: Option<Found> = None;
-        for shell in 0..=MOST_SHELLS {
+        for shell in 0..=MAX_SHELLS {
             // No link that is not found yet is nearer to the axis: half a cell for its samples.
             let rest = (f64::from(shell) - 1.5) * self.side - self.widest;
             if rest > best.map_or(REACH, |found| found.far) {

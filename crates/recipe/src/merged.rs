@@ -19,12 +19,12 @@ const FILL: f64 = 2.0;
 
 /// Angles (degrees) of a mesh for simulators that are made larger where the surface allows it. Tetrahedra on
 /// narrower triangles are poor ones.
-const LEAST_ANGLE: f64 = 20.0;
+const MIN_ANGLE: f64 = 20.0;
 
 /// The same as a share of the angle of half a rectangle whose sides have the ratio that was asked for: where that
 /// is narrow, wider triangles would only be had by giving up sides of the tubes. With 0.9 the area of straight
 /// neurites grows by 1 %.
-const LEAST_SHARE: f64 = 0.85;
+const MIN_SHARE: f64 = 0.85;
 
 /// A refined surface merged with itself where it crossed.
 pub struct Merged {
@@ -86,8 +86,8 @@ fn least_angle(levels: Levels) -> f64 {
     match levels {
         Levels::Edges(EdgeRule::Lengths { aspect, .. }) => {
             let half_rectangle = (1.0 / f64::from(aspect)).atan().to_degrees();
-            LEAST_ANGLE.min(LEAST_SHARE * half_rectangle)
+            MIN_ANGLE.min(MIN_SHARE * half_rectangle)
         }
-        _ => LEAST_ANGLE,
+        _ => MIN_ANGLE,
     }
 }

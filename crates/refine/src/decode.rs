@@ -58,7 +58,7 @@ pub(crate) const ANCHOR_TAPER_SHIFT: u32 = 3;
 /// First bit of an anchor's collar, after its taper.
 pub(crate) const ANCHOR_COLLAR_SHIFT: u32 = 15;
 /// Greatest height of a shaped ring's corner over its center, in radii.
-pub(crate) const MOST_HEIGHT: f32 = 4.0;
+pub(crate) const MAX_HEIGHT: f32 = 4.0;
 /// Bit of a point where the tube narrows.
 pub(crate) const POINT_NARROWS: u32 = 1 << 29;
 /// Bit of a taper that is negative.
@@ -250,7 +250,7 @@ impl ShapedRing {
             ..self.circle
         };
         let (on_circle, normal) = turned.corner(center, 0);
-        let height = signed16(self.heights[k]) * MOST_HEIGHT * radius(self.circle.radius);
+        let height = signed16(self.heights[k]) * MAX_HEIGHT * radius(self.circle.radius);
         (on_circle + self.circle.tangent() * height, normal)
     }
 
@@ -273,13 +273,13 @@ impl ShapedRing {
 }
 
 /// Greatest error of a point's center, in radii.
-const MOST_CENTER_ERROR: f32 = 0.002;
+const MAX_CENTER_ERROR: f32 = 0.002;
 
 /// Whether a sphere is small enough for a point of this radius.
 pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
     // A step is sphere · 2 / POSITION_STEPS; a center is off by up to half a step in each of three
     // directions.
-    sphere / POSITION_STEPS * 1.74 <= MOST_CENTER_ERROR * radius
+    sphere / POSITION_STEPS * 1.74 <= MAX_CENTER_ERROR * radius
 }
 
 #[cfg(test)]

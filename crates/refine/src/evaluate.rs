@@ -28,10 +28,10 @@ use glam::Vec3;
 use neurotess_mesh::PatchKind;
 
 use crate::{Caps, Path, RefineOptions};
-pub(crate) use center_line::{CenterLine, MOST_SWAY, hermite_tangents};
+pub(crate) use center_line::{CenterLine, MAX_SWAY, hermite_tangents};
 pub(crate) use corner::{Corner, Jet};
 pub(crate) use edges::{
-    EdgeCurve, EdgeKind, EdgeNormals, MOST_OFFSET, SOMA_FILLET, edge, loft_controls, soma_controls,
+    EdgeCurve, EdgeKind, EdgeNormals, MAX_OFFSET, SOMA_FILLET, edge, loft_controls, soma_controls,
 };
 use edges::{OverLength, cubic, first_leg, longer, mix, most_squared};
 use profile::Share;

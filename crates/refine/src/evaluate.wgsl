@@ -65,7 +65,7 @@ fn hermite_tangent(end: Corner, a: Corner, b: Corner) -> vec3<f32> {
     let way = b.center - a.center;
     let span = length(way);
     let direction = way / max(span, 1e-37);
-    let most = MOST_SWAY * min(a.radius, b.radius) * (27.0 / 4.0);
+    let most = MAX_SWAY * min(a.radius, b.radius) * (27.0 / 4.0);
     if (end.role == ROLE_JOINT) {
         return way;
     }
@@ -144,7 +144,7 @@ fn tube_point(a: Corner, b: Corner, c: Corner, d: Corner, path: u32, x: f32, y: 
     let radial_y = radial_far - radial_near;
     let center = center_line(a, d, path, y);
     let longest = vec2(longer(a.offset, b.offset), longer(d.offset, c.offset));
-    let reach = MOST_OFFSET * (longest.x * (1.0 - y) + longest.y * y);
+    let reach = MAX_OFFSET * (longest.x * (1.0 - y) + longest.y * y);
     let most = reach * reach;
     let around = within(over_length(offset, offset_x, radial, radial_x), most);
     let along = within(over_length(offset, offset_y, radial, radial_y), most);

@@ -10,12 +10,12 @@ use neurotess_mesh::{PatchKind, Role};
 
 use crate::bounding_sphere::{SOMA_REACH, TUBE_REACH};
 use crate::decode::{
-    ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, COLLAR_AGAINST, EXPLICIT, MOST_HEIGHT, POINT_END,
+    ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, COLLAR_AGAINST, EXPLICIT, MAX_HEIGHT, POINT_END,
     POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_SHAPED, POINTS_OF_SPHERE,
     POSITION_STEPS, RADIUS_BASE, SHAPED_INSET, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, SHAPED_U32S,
     SPHERE_U32S, TAPER_LOW_BITS, TAPER_NARROWS,
 };
-use crate::evaluate::{MOST_OFFSET, MOST_SWAY, SOMA_FILLET, STEEPEST_PROFILE};
+use crate::evaluate::{MAX_OFFSET, MAX_SWAY, SOMA_FILLET, STEEPEST_PROFILE};
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
 use crate::wgsl::{Constants, WgslFile};
 use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
@@ -111,15 +111,15 @@ pub fn constants() -> Constants {
     whole("LEVELS_PIXEL_SIZE", LEVELS_PIXEL_SIZE);
     whole("LEVELS_PIXEL_ERROR", LEVELS_PIXEL_ERROR);
     let mut real = |name: &str, value: f32| constants.f32(name, value);
-    real("MOST_OFFSET", MOST_OFFSET);
-    real("MOST_SWAY", MOST_SWAY);
+    real("MAX_OFFSET", MAX_OFFSET);
+    real("MAX_SWAY", MAX_SWAY);
     real("SOMA_FILLET", SOMA_FILLET);
     real("STEEPEST_PROFILE", STEEPEST_PROFILE);
     real("SHARE", SHARE);
     real("SLACK", SLACK);
     real("STEEPEST", STEEPEST);
     real("POSITION_STEPS", POSITION_STEPS);
-    real("MOST_HEIGHT", MOST_HEIGHT);
+    real("MAX_HEIGHT", MAX_HEIGHT);
     real("TUBE_REACH", TUBE_REACH);
     real("SOMA_REACH", SOMA_REACH);
     real("SQRT_2", std::f32::consts::SQRT_2);

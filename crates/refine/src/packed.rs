@@ -13,7 +13,7 @@ use crate::decode::{
     TAPER_NARROWS, collar, from_sphere, radius, taper, to_sphere,
 };
 use crate::packer::{Contents, Packer, cap_ring, widened};
-use crate::part::{MOST_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
+use crate::part::{MAX_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
 use crate::ring_form::RingForm;
 
 impl Packer<'_> {
@@ -244,7 +244,7 @@ impl ColorKeys {
         loop {
             list.sort_unstable();
             list.dedup();
-            if list.len() <= MOST_COLOR_KEYS {
+            if list.len() <= MAX_COLOR_KEYS {
                 return Self { list, dropped };
             }
             dropped += 1;

@@ -11,20 +11,20 @@ use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{POINTS_OF_SPHERE, accurate};
-use crate::part::{MOST_COLOR_KEYS, PATCHES_OF_SPHERE};
+use crate::part::{MAX_COLOR_KEYS, PATCHES_OF_SPHERE};
 use crate::ring_form::{RingForm, implicit_ring, shaped_ring};
 use crate::runs::{NO_PATCH, Tube, find_runs};
 
 /// Most slots for patches of a part: a shaped ring keeps the index of its point in 22 bits.
-const MOST_PATCHES: usize = 1 << 24;
+const MAX_PATCHES: usize = 1 << 24;
 /// Most explicit vertices and corners of shaped rings of a part: their indices have 15 bits.
-const MOST_EXPLICIT: usize = 1 << 15;
+const MAX_EXPLICIT: usize = 1 << 15;
 /// Patches of somata are stored with indices of 12 bits: they reach this many explicit vertices.
 const FEW_EXPLICIT: usize = 1 << 12;
 
 /// If all color keys below 2³¹ are also below this, they are taken for indices: see
 /// [`crate::pack()`].
-const MOST_NUMBERS: u32 = 1 << 20;
+const MAX_NUMBERS: u32 = 1 << 20;
 
 /// Runs and other patches that go into one part, by index.
 #[derive(Default)]
@@ -95,7 +95,7 @@ impl<'m> Packer<'m> {
 
     /// Runs and other patches by part, in the mesh's order.
     pub(crate) fn piles(&self, most_patches: usize) -> Vec<Pile> {
-        let most_patches = most_patches.min(MOST_PATCHES);
+        let most_patches = most_patches.min(MAX_PATCHES);
         // A patch with corners of implicit or shaped rings goes where their run is.
         let mut with_run = vec![Vec::new(); self.runs.len()];
         for &other in &self.others {
@@ -113,8 +113,8 @@ impl<'m> Packer<'m> {
                 explicit += more_explicit;
                 numbers.extend(color_keys);
                 if patches > most_patches
-                    || explicit > MOST_EXPLICIT
-                    || exact && numbers.len() > MOST_COLOR_KEYS
+                    || explicit > MAX_EXPLICIT
+                    || exact && numbers.len() > MAX_COLOR_KEYS
                 {
                     piles.push(Pile::default());
                     (patches, explicit) = (PATCHES_OF_SPHERE + more, more_explicit);
@@ -290,7 +290,7 @@ impl<'m> Packer<'m> {
     /// scale.
     fn has_numbers(&self) -> bool {
         let mut color_keys = self.color_keys.iter();
-        color_keys.all(|key| !(MOST_NUMBERS..1 << 31).contains(key))
+        color_keys.all(|key| !(MAX_NUMBERS..1 << 31).contains(key))
     }
 
     pub(crate) fn level(&self, tracing: u32) -> u32 {

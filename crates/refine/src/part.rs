@@ -8,7 +8,7 @@ use crate::decode::POINTS_OF_SPHERE;
 /// Number of patches that share a bounding sphere.
 pub const PATCHES_OF_SPHERE: usize = 4 * POINTS_OF_SPHERE;
 /// Most different color keys of a part's points: their indices have 10 bits.
-pub(crate) const MOST_COLOR_KEYS: usize = 1 << 10;
+pub(crate) const MAX_COLOR_KEYS: usize = 1 << 10;
 
 /// Where the arrays of a part begin in its packed buffer, in u32s, and how many there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -43,14 +43,14 @@ pub(crate) struct Grid {
 }
 
 /// Edges that are worth a thread.
-const LEAST_EDGES: usize = 4096;
+const MIN_EDGES: usize = 4096;
 
 impl Plan {
     pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
         let (mut edges, patch_edges) = find_edges(mesh);
         edges
             .par_iter_mut()
-            .with_min_len(LEAST_EDGES)
+            .with_min_len(MIN_EDGES)
             .for_each(|edge| {
                 let ends = [edge.from, edge.to]
                     .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));

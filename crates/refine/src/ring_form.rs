@@ -4,15 +4,15 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role};
 
 use crate::decode::{
-    ImplicitRing, MOST_HEIGHT, ShapedRing, to_collar, to_octahedral, to_radius, to_signed16,
+    ImplicitRing, MAX_HEIGHT, ShapedRing, to_collar, to_octahedral, to_radius, to_signed16,
     to_taper, to_turn,
 };
 
 /// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
 /// error.
-const MOST_APART: f32 = 0.0095;
+const MAX_APART: f32 = 0.0095;
 /// Least cosine of the angle between a shaped ring's normal and the mesh's own (2.5°).
-const LEAST_ALIKE: f32 = 0.999;
+const MIN_ALIKE: f32 = 0.999;
 
 /// How a ring is computed from its point.
 #[derive(Clone, Copy, Debug)]
@@ -64,12 +64,12 @@ pub(crate) fn shaped_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ShapedRin
     let shaped = ShapedRing {
         circle,
         turns: offsets.map(|offset| to_turn(tangent, offset)),
-        heights: offsets.map(|o| to_signed16(o.dot(tangent) / (MOST_HEIGHT * point.radius))),
+        heights: offsets.map(|o| to_signed16(o.dot(tangent) / (MAX_HEIGHT * point.radius))),
         collar: if inset { to_collar(point.collar) } else { 0 },
     };
     let alike = (0..4).all(|k| {
         let normal = shaped.corner(point.center, k).1;
-        normal.dot(mesh.vertices[ring[k] as usize].normal) >= LEAST_ALIKE
+        normal.dot(mesh.vertices[ring[k] as usize].normal) >= MIN_ALIKE
     });
     let near = near(mesh, ring, point.radius, |k| shaped.corner(point.center, k));
     (alike && near).then_some(shaped)
@@ -103,6 +103,6 @@ fn near(
 ) -> bool {
     (0..4).all(|k| {
         let own = mesh.vertices[ring[k] as usize].position;
-        corner(k).0.distance(own) <= MOST_APART * radius
+        corner(k).0.distance(own) <= MAX_APART * radius
     })
 }

@@ -3,7 +3,7 @@
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
 /// Most segments of a run; longer ones are cut.
-const MOST_SEGMENTS: usize = 1 << 14;
+const MAX_SEGMENTS: usize = 1 << 14;
 /// In place of a patch where there is none.
 pub(crate) const NO_PATCH: u32 = u32::MAX;
 
@@ -31,7 +31,7 @@ pub(crate) fn find_runs(mesh: &CoarseMesh) -> (Vec<Tube>, Vec<usize>) {
     let mut i = 0;
     while i < mesh.patches.len() {
         let run = runs.last();
-        let run = run.filter(|run| end == i && run.patches.len() < MOST_SEGMENTS);
+        let run = run.filter(|run| end == i && run.patches.len() < MAX_SEGMENTS);
         let last = run.map(|run| run.rings[run.rings.len() - 1]);
         let open = || last.and_then(|ring| open_segment(mesh, i, ring));
         let Some(segment) = whole_segment(mesh, i).or_else(open) else {

@@ -295,7 +295,7 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
     ring.turn = select(turns, last, k == 3u) & 0x3ffu;
     let on_circle = ring_corner(ring, 0u);
     let height = signed16(packed[at + 3u + k / 2u] >> (16u * (k & 1u)));
-    let offset = on_circle.offset + ring.tangent * (height * MOST_HEIGHT * ring.radius);
+    let offset = on_circle.offset + ring.tangent * (height * MAX_HEIGHT * ring.radius);
     let role = shaped_role(base, vertex);
     return Corner(
         ring.center + offset,

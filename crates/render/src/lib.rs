@@ -108,7 +108,7 @@ pub use sources::adaptive::Adaptive;
 pub use sources::adaptive::readback::FrameStats;
 pub use sources::adaptive::settings::{AdaptiveSettings, CullView};
 pub use sources::budgeted::{
-    DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MOST_BUDGET, Proxy,
+    DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MAX_BUDGET, Proxy,
     StreamedTemplates,
 };
 pub use sources::combined::Combined;

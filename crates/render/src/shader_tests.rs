@@ -22,7 +22,7 @@ use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed};
 use crate::sources::adaptive::work::CoarsePoint;
 use crate::sources::budgeted;
 use crate::sources::budgeted::layout::{
-    Chunk, Extent, Eye, GpuInstance, MOST_SWAY, Shape, Sums, VisibleChunk,
+    Chunk, Extent, Eye, GpuInstance, MAX_SWAY, Shape, Sums, VisibleChunk,
 };
 use crate::sources::budgeted::passes::{Arguments, Measured, VisibleCluster, select_shader};
 use crate::sources::markers::{self, MarkerFrame, StoredMarker};
@@ -420,7 +420,7 @@ fn budgeted_shaders_are_valid_in_every_language_and_have_our_structs() {
 #[test]
 fn paths_sway_as_refined_ones_do() {
     let mut wanted = neurotess_refine::wgsl::Constants::default();
-    wanted.f32("MOST_SWAY", MOST_SWAY);
+    wanted.f32("MAX_SWAY", MAX_SWAY);
     assert!(neurotess_refine::gpu::constants().contains(&wanted));
 }
 

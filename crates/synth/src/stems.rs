@@ -8,7 +8,7 @@ use neurotess_morphology::random::Random;
 /// Directions tried for a stem; the one farthest from the other stems is taken.
 const TRIES: u32 = 24;
 /// A stem of fewer points would be a stub.
-const LEAST_POINTS: usize = 8;
+const MIN_POINTS: usize = 8;
 
 /// Number of stems of a tree with `points` in all; `size` is 1 in a cell of the usual size.
 pub(crate) fn count(tree: &Tree, points: usize, size: f64, random: &mut Random) -> usize {
@@ -20,7 +20,7 @@ pub(crate) fn count(tree: &Tree, points: usize, size: f64, random: &mut Random) 
         .between((f64::from(least), f64::from(most) + 1.0))
         .floor();
     let scaled = (usual * libm::pow(size, 0.1)).round() as usize;
-    scaled.min(points / LEAST_POINTS).max(1)
+    scaled.min(points / MIN_POINTS).max(1)
 }
 
 /// Shares points so that none is lost: each gets the part that its weight asks for.

@@ -15,7 +15,7 @@ use crate::work::Work;
 const EXACT_ROUNDS: u32 = 2;
 
 /// Most rings of neighbors that an arrangement is tried with.
-const MOST_RINGS: u32 = 4;
+const MAX_RINGS: u32 = 4;
 
 /// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. `check` is asked between
 /// steps whether to stop.
@@ -66,7 +66,7 @@ pub(crate) fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
 /// Replaces the faces around crossings by their union.
 fn cut(work: &mut Work, pairs: &[[u32; 2]]) -> Result<(), UnionError> {
     let mut fault = None;
-    for rings in 1..=MOST_RINGS {
+    for rings in 1..=MAX_RINGS {
         match splice(work, &around(work, pairs, rings)) {
             Ok(()) => return Ok(()),
             Err(new) => fault = Some(new),

@@ -16,7 +16,7 @@ use crate::steps::{self, Steps, output, root, target_folder};
 /// Where it is written.
 const FOLDER: &str = "out/gpu-bundle";
 /// Most bytes of it: it travels to machines that are lent for minutes.
-const MOST_BYTES: u64 = 55_000_000;
+const MAX_BYTES: u64 = 55_000_000;
 
 /// Debian's packages of libraries: the Vulkan loader, and what NVIDIA's driver loads, which containers may lack. Each is
 /// used only where the system has no library of its name.
@@ -209,11 +209,11 @@ fn size(folder: &Path) -> anyhow::Result<String> {
         }
     }
     let megabytes = |bytes: u64| bytes as f64 / 1e6;
-    if bytes > MOST_BYTES {
+    if bytes > MAX_BYTES {
         bail!(
             "{:.1} MB: {:.0} may be",
             megabytes(bytes),
-            megabytes(MOST_BYTES)
+            megabytes(MAX_BYTES)
         );
     }
     Ok(format!("{:.1} MB", megabytes(bytes)))

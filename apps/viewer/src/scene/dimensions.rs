@@ -14,7 +14,7 @@ const DOT: f32 = 0.42;
 /// Length of a dash and of the gap after it.
 const DASH: [f64; 2] = [0.45, 0.35];
 /// Most dashes of a line; a longer one, most of which is outside the picture, is drawn solid.
-const MOST_DASHES: f64 = 400.0;
+const MAX_DASHES: f64 = 400.0;
 /// Half the length of a bar at an end.
 const TICK: f64 = 0.32;
 /// Length of the lines that point at the ends of a diameter from outside.
@@ -154,7 +154,7 @@ impl Projection<'_> {
         let [dash, gap] = DASH.map(|length| length * self.line);
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let count = ((length + gap) / (dash + gap)).ceil();
-        if !(2.0..=MOST_DASHES).contains(&count) {
+        if !(2.0..=MAX_DASHES).contains(&count) {
             return vec![line(vec![a, b], THIN)];
         }
         let dash_at = |i: u32| {

@@ -15,7 +15,7 @@ use crate::model::revision::Revision;
 use crate::scene::content::{self, InstancesKey, SceneContent};
 
 /// Fewest triangles of a frame, however slow the device.
-const LEAST_BUDGET: u32 = 12_500;
+const MIN_BUDGET: u32 = 12_500;
 
 /// Proxies of the scene's templates, once they are computed.
 #[derive(Default)]
@@ -179,7 +179,7 @@ impl Explorer {
     pub(crate) fn keep_up(&mut self, took_ms: f64, most_ms: f64) {
         let budget = self.budget.unwrap_or(DEFAULT_BUDGET);
         if took_ms > 1.5 * most_ms {
-            self.budget = Some((budget / 2).max(LEAST_BUDGET));
+            self.budget = Some((budget / 2).max(MIN_BUDGET));
         } else if took_ms < 0.4 * most_ms {
             self.budget = Some((budget / 5 * 7).min(DEFAULT_BUDGET));
         }

@@ -29,7 +29,7 @@ const EVENT_FRAME: f64 = 1.0 / 60.0;
 const PATIENCE: u32 = 6;
 
 /// Most passes of a frame, each with some of the waiting events: a second of fast clicks has 20.
-pub(crate) const MOST_PASSES: NonZeroUsize = NonZeroUsize::MIN.saturating_add(63);
+pub(crate) const MAX_PASSES: NonZeroUsize = NonZeroUsize::MIN.saturating_add(63);
 
 /// The kind of dialog that is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

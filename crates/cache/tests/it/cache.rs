@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Barrier;
 
-use neurotess_cache::{Cache, CacheWarning, FileError, LEAST_POINTS, Summary};
+use neurotess_cache::{Cache, CacheWarning, FileError, MIN_POINTS, Summary};
 use neurotess_generate::{GenerateOptions, Generated, SomaMethod, generate};
 use neurotess_morphology::Morphology;
 use neurotess_output::{Existing, Output};
@@ -313,7 +313,7 @@ fn of_a_few_points_no_cache_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("circuit.ntcache");
     let (cell, options) = (cell(1), GenerateOptions::default());
-    assert!(cell.points.len() < LEAST_POINTS);
+    assert!(cell.points.len() < MIN_POINTS);
     let cache = Cache::at(vec![file.clone()]);
     let mesh = cache.mesh(&cell, &options, || generate(&cell, &options));
     assert!(mesh.is_ok());

@@ -18,7 +18,7 @@ const LEVELS: [u32; 3] = [1, 2, 4];
 /// The surface is within the box around all traced points, each with so many radii around it. Between the points that are
 /// looked at it may reach farther, and nothing is to be beyond two radii: with 1.8, one of some thousand paths that turn
 /// back was.
-const MOST_RADII: f32 = 1.5;
+const MAX_RADII: f32 = 1.5;
 /// Steps along a side of a patch that may reach far.
 const STEPS: u32 = 8;
 /// A ring whose normal is this far from the way to the next one bends the tube between them beyond both: cosine of 73°. By
@@ -31,7 +31,7 @@ const TAPERED: f32 = 2.0;
 /// of a sound one. Only pieces with a tube that turns over are looked at as a whole, and refined only where that tube may
 /// outweigh the others: to refine a cell takes as long as making it.
 pub(crate) fn faulty_samples(mesh: &CoarseMesh) -> BTreeSet<i32> {
-    let reach = mesh.around_tracing(MOST_RADII);
+    let reach = mesh.around_tracing(MAX_RADII);
     let mut faulty = BTreeSet::new();
     // Lateral patches, those that turn over and those that lean.
     let (mut turned, mut leaning) = (Vec::new(), Vec::new());
@@ -103,7 +103,7 @@ fn doubtful_pieces(mesh: &CoarseMesh, turned: &[usize], leaning: &[usize]) -> Ve
     doubtful.dedup();
     doubtful.retain(|&piece| {
         let [volume, of_tube] = volumes[piece as usize];
-        volume <= CLEAR_VOLUME * of_tube + MOST_TURNED * unknown[piece as usize]
+        volume <= CLEAR_VOLUME * of_tube + MAX_TURNED * unknown[piece as usize]
     });
     let mut patches = vec![Vec::new(); doubtful.len()];
     for (patch, corners) in (0..).zip(corners()) {
@@ -149,13 +149,13 @@ fn bend(mesh: &CoarseMesh, corners: [u32; 4]) -> (f32, f32) {
 
 /// Least volume of a piece, as a share of that of tubes with its area and radii: half of one times the other. A tube that
 /// is partly inside out has a part of the volume at one level and less than nothing at the next.
-const LEAST_VOLUME: f64 = 0.1;
-/// A piece whose rings alone have this share of that volume keeps [`LEAST_VOLUME`] between them: a straight tube of four
+const MIN_VOLUME: f64 = 0.1;
+/// A piece whose rings alone have this share of that volume keeps [`MIN_VOLUME`] between them: a straight tube of four
 /// sides has 0.7.
 const CLEAR_VOLUME: f64 = 0.3;
 /// Most volume that a leaning patch may take from its piece, in times its longer side and the square of its thicker radius: a
 /// quarter of a tube has 0.8 of that, and one that bends is at most three times as long and inside out all along.
-const MOST_TURNED: f64 = 4.0;
+const MAX_TURNED: f64 = 4.0;
 
 /// The vertices of connected pieces of a closed surface that have hardly any volume, or less than none.
 fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
@@ -175,7 +175,7 @@ fn inside_out(surface: &SurfaceMesh) -> impl Iterator<Item = &SurfaceVertex> {
         .zip(&surface.vertices)
         .filter_map(move |(index, vertex)| {
             let [volume, of_tube] = volumes[pieces.of(index) as usize];
-            (volume <= LEAST_VOLUME * of_tube).then_some(vertex)
+            (volume <= MIN_VOLUME * of_tube).then_some(vertex)
         })
 }
 

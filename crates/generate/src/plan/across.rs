@@ -20,14 +20,14 @@ use crate::tracing::{NONE, Skeleton};
 
 /// A parent may be this much thicker than the trunk. Up to 1.05, as branches of parents, six forks of twelve cells
 /// have 3.7 % more of their area off the blended surface in the mean, and none less.
-const MOST_THICK: f64 = 1.2;
+const MAX_THICK: f64 = 1.2;
 /// The fork itself is the trunk if it is at most this much thicker than the children. Without it eleven forks of the
 /// twelve cells and one of the sample `granule` have 1.1 % more of their area off in the mean; with 2, five have 1.9 %
 /// more.
-const MOST_WIDENED: f64 = 1.5;
+const MAX_WIDENED: f64 = 1.5;
 /// Way that a parent needs between its inset and the fork before, in radii of either. With half of it 29 files have as
 /// many pairs near forks, and at level 4 1 % more folds.
-const LEAST_WAY: f64 = 3.0;
+const MIN_WAY: f64 = 3.0;
 
 /// Whether a fork of two children is to have them as its trunk: they are straighter to one another than either is to
 /// the parent, and the fork is not much thinner than that.
@@ -40,8 +40,8 @@ pub(crate) fn is_straight_across(skeleton: &Skeleton, fork: u32) -> bool {
         return false;
     };
     let [a, b] = [a, b].map(|child| skeleton.node(child));
-    let trunk = here.radius.min(MOST_WIDENED * a.radius.min(b.radius));
-    if parent.radius >= MOST_THICK * trunk {
+    let trunk = here.radius.min(MAX_WIDENED * a.radius.min(b.radius));
+    if parent.radius >= MAX_THICK * trunk {
         return false;
     }
     let [a, b, up] = [a, b, parent].map(|node| (node.center - here.center).normalize_or_zero());
@@ -166,7 +166,7 @@ impl Planner<'_> {
             Some(before) => {
                 let way = shape.center.distance(self.base.node(before).center);
                 let radii = self.radius(before) + zone.radius;
-                (way > shape.reach + LEAST_WAY * radii).then_some(last)
+                (way > shape.reach + MIN_WAY * radii).then_some(last)
             }
             None => Some(last),
         }

@@ -5,9 +5,9 @@ use super::zone::Zone;
 
 /// Zones share their rings if their branches leave at least this far apart around the trunk (cosine
 /// of 60°).
-const MOST_ALIKE: f64 = 0.5;
+const MAX_ALIKE: f64 = 0.5;
 /// Branches between the same two rings at most: a ring has four sides, and one stays free to turn.
-const MOST_SHARED: usize = 3;
+const MAX_SHARED: usize = 3;
 
 /// Branches between the same two rings of a trunk.
 #[derive(Clone, Debug)]
@@ -59,10 +59,10 @@ pub(crate) fn arrange(mut zones: Vec<Zone>, trunk: &Polyline) -> Result<Vec<Grou
 fn fits(zone: &Zone, group: &Group, trunk: &Polyline) -> bool {
     let side = zone.side(trunk);
     let mut others = group.zones.iter();
-    let apart = others.all(|other| other.side(trunk).dot(side) < MOST_ALIKE);
+    let apart = others.all(|other| other.side(trunk).dot(side) < MAX_ALIKE);
     let both = group.high.max(zone.high) - group.low.min(zone.low);
     let longer = (group.high - group.low).max(zone.high - zone.low);
-    group.zones.len() < MOST_SHARED && apart && both < 2.0 * longer
+    group.zones.len() < MAX_SHARED && apart && both < 2.0 * longer
 }
 
 fn joined(mut group: Group, zone: Zone) -> Group {

@@ -24,8 +24,8 @@ const VERY_SHARP: f64 = 1.83;
 const CLEAR: f64 = 1.1;
 /// A neighbor is at least this many radii away, and this many times as far as rings that stand between are from their
 /// traced points: where a path goes to and fro, the rings of two sharp bends would be in the way of each other.
-const LEAST_WAY: f64 = 1.0;
-const LEAST_WAY_PER_ASIDE: f64 = 1.4;
+const MIN_WAY: f64 = 1.0;
+const MIN_WAY_PER_ASIDE: f64 = 1.4;
 
 /// Makes two rings of one at sharp bends.
 pub(crate) fn split_sharp_bends(plan: &mut Plan) {
@@ -63,7 +63,7 @@ fn with_room(path: &Path, mut bends: Vec<Bend>) -> Vec<Bend> {
         let ring = &path.rings[bend.ring];
         let own = bend.aside.length();
         let is_near = |neighbor: usize| {
-            let least = LEAST_WAY * ring.radius + LEAST_WAY_PER_ASIDE * (own + asides[neighbor]);
+            let least = MIN_WAY * ring.radius + MIN_WAY_PER_ASIDE * (own + asides[neighbor]);
             ring.center.distance(path.rings[neighbor].center) < least
         };
         let has_room = !is_near(bend.ring - 1) && !is_near(bend.ring + 1);

@@ -14,7 +14,7 @@ use super::path::{Arm, Joint, Origin, Path, PathEnd, Plan};
 use crate::warning::Warnings;
 
 /// Least angle about the joint's normal between two of four or more neighbors (radians).
-const LEAST_ANGLE: f64 = 0.35;
+const MIN_ANGLE: f64 = 0.35;
 
 /// Splits joints of four and more arms until these are far enough apart. Each split takes arms from a joint and makes
 /// one of three, which is never split, so that this ends.
@@ -46,7 +46,7 @@ impl Plan {
         let directions = self.directions(joint, &arms);
         if arms.len() > MAX_NEIGHBORS {
             self.halve_all(joint, touched);
-        } else if plane(&directions).1 < LEAST_ANGLE {
+        } else if plane(&directions).1 < MIN_ANGLE {
             let pair = nearest_pair(&directions).map(|slot| arms[slot]);
             let new = self.branch_off(joint, &pair);
             let beyond = pair.into_iter().filter_map(|arm| self.joint_beyond(arm));

@@ -67,7 +67,7 @@ pub(crate) struct JointShape {
 }
 
 /// Least angle between two consecutive neighbors about the normal; nearer ones are spread.
-const LEAST_GAP: f64 = 0.12;
+const MIN_GAP: f64 = 0.12;
 /// A crotch stays behind this share of the way to either neighbor's ring.
 const BEFORE_RING: f64 = 0.85;
 
@@ -180,10 +180,10 @@ fn poles(radius: f64, normal: DVec3, directions: &[DVec3]) -> [DVec3; 2] {
     [1.0, -1.0].map(|side| normal * (side * radius / (1.0 - lean(side) * lean(side)).sqrt()))
 }
 
-/// Moves angles apart that are nearer than [`LEAST_GAP`]; ascending, within one turn.
+/// Moves angles apart that are nearer than [`MIN_GAP`]; ascending, within one turn.
 fn spread(angles: &mut [f64]) {
     let k = angles.len();
-    let least = LEAST_GAP.min(TAU / (2.0 * k as f64));
+    let least = MIN_GAP.min(TAU / (2.0 * k as f64));
     for _ in 0..20 {
         let mut moved = false;
         for i in 0..k {

@@ -10,13 +10,13 @@ use crate::warning::Warnings;
 /// Free way between a joint and a neighbor's ring, in radii of that ring.
 const FREE_WAY: f64 = 0.35;
 /// Times that all joints are looked at: what is left out changes the directions of what is beside it.
-const MOST_ROUNDS: usize = 8;
+const MAX_ROUNDS: usize = 8;
 
 /// Leaves out rings that lie within the reach of a joint beside them.
 pub(crate) fn clear_the_way(plan: &mut Plan, warnings: &mut Warnings) {
     let mut total = 0;
     let mut changed: BTreeSet<u32> = (0..plan.joints.len() as u32).collect();
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         // By path and ring, from the highest of each path down.
         let mut dropped: BTreeSet<(u32, usize)> = BTreeSet::new();
         for &joint in &changed {

@@ -20,10 +20,10 @@ pub(super) const CLEAR: f64 = 1.05;
 /// An inset stands across its branch up to this cosine of the angle between its direction and the branch's.
 const ACROSS: f64 = 0.92;
 /// Points of a branch that are looked at to find its way out.
-const MOST_LOOKED_AT: usize = 40;
+const MAX_LOOKED_AT: usize = 40;
 
 /// Branches of a path that are worth a thread.
-const LEAST_BRANCHES: usize = 8;
+const MIN_BRANCHES: usize = 8;
 
 /// How a branch leaves its trunk.
 enum Leaving {
@@ -47,7 +47,7 @@ impl Planner<'_> {
         let leaving: Vec<(u32, Leaving)> = way
             .branches
             .par_iter()
-            .with_min_len(LEAST_BRANCHES)
+            .with_min_len(MIN_BRANCHES)
             .map(|&(index, child)| {
                 (
                     child,
@@ -116,7 +116,7 @@ impl Planner<'_> {
     fn branch_line(&self, fork: u32, child: u32) -> (Polyline, bool) {
         let mut forks = false;
         let mut nodes = vec![fork, child];
-        while nodes.len() < MOST_LOOKED_AT {
+        while nodes.len() < MAX_LOOKED_AT {
             let (before, here) = (nodes[nodes.len() - 2], nodes[nodes.len() - 1]);
             match self.children.of(here) {
                 [] => break,
@@ -135,7 +135,7 @@ impl Planner<'_> {
 
     /// From a fork up its parents, as thick as the first of them.
     fn line_up(&self, fork: u32) -> Polyline {
-        let nodes = self.parents(fork).take(MOST_LOOKED_AT);
+        let nodes = self.parents(fork).take(MAX_LOOKED_AT);
         let centers: Vec<DVec3> = nodes.map(|n| self.base.node(n).center).collect();
         let radius = self.base.node(self.base.node(fork).parent).radius;
         let radii = vec![radius; centers.len()];

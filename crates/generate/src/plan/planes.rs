@@ -12,9 +12,9 @@ use crate::tracing::{SomaSphere, off_segment};
 use crate::warning::Warnings;
 
 /// Times that a ring is turned before it is left out.
-const MOST_TURNS: u8 = 3;
+const MAX_TURNS: u8 = 3;
 /// A ring is left out only if the path moves by less than this share of its radius.
-const MOST_MOVED: f64 = 2.0;
+const MAX_MOVED: f64 = 2.0;
 /// Rings are left out only where they are nearer to those that crossed, along the path, than this many radii: half way
 /// around the tightest bend and a bit. What lies farther off does not untangle a path that turns back.
 const FARTHEST: f64 = 4.0;
@@ -154,7 +154,7 @@ impl<'a> Planes<'a> {
                 .map(|n| (self.cost(n, [i, j]), n))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .unwrap_or((f64::INFINITY, i));
-            if cost < MOST_MOVED * self.rings[ring].radius {
+            if cost < MAX_MOVED * self.rings[ring].radius {
                 pending.extend(self.leave_out(ring, j));
             } else {
                 self.accepted += 1;
@@ -237,7 +237,7 @@ impl<'a> Planes<'a> {
         let mut turned = false;
         for n in [i, j] {
             let is_fixed = n == 0 || self.path.end_at(n) != PathEnd::Free;
-            if !is_fixed && self.turns[n] < MOST_TURNS {
+            if !is_fixed && self.turns[n] < MAX_TURNS {
                 self.normals[n] = (self.normals[n] + way).try_normalize().unwrap_or(way);
                 self.turns[n] += 1;
                 turned = true;

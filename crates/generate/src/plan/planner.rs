@@ -15,7 +15,7 @@ use super::zone::Beginning;
 use crate::tracing::{Children, NONE, Root, Skeleton};
 
 /// Tries to lay out a path before all forks left on it become joints.
-const MOST_TRIES: usize = 6;
+const MAX_TRIES: usize = 6;
 
 /// A path yet to be laid out.
 pub(super) enum Start {
@@ -135,7 +135,7 @@ impl<'a> Planner<'a> {
     /// Makes joints of forks that have no room for their insets; of all on the path after many tries.
     pub(super) fn refuse(&mut self, way: &Way, forks: Vec<u32>, tries: usize) {
         let all = way.branches.iter().map(|&(i, _)| way.nodes[i]);
-        let failed = if tries < MOST_TRIES {
+        let failed = if tries < MAX_TRIES {
             forks
         } else {
             all.collect()

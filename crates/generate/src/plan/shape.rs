@@ -7,11 +7,11 @@ use glam::DVec3;
 use super::cone::{RoundCone, distance, outwards};
 
 /// Steepest that a branch leaves its trunk, by the cosine of the angle to the trunk's normal: 60°.
-pub(super) const LEAST_STEEP: f64 = 0.5;
+pub(super) const MIN_STEEP: f64 = 0.5;
 /// Share of the way from the trunk to the ring over which the lofts run along the branch.
 const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
-const MOST_SHEAR: f64 = 2.2;
+const MAX_SHEAR: f64 = 2.2;
 /// Places along a branch where it is looked whether its trunk comes near it again.
 const TOP_STEPS: u32 = 8;
 
@@ -69,7 +69,7 @@ impl InsetSite {
         let top = self.top(trunk, height);
         let heights = radials.map(|side| self.height(trunk, side * self.radius, height, top));
         let mean = heights.iter().sum::<f64>() / 4.0;
-        let most = MOST_SHEAR * self.radius;
+        let most = MAX_SHEAR * self.radius;
         let mut corners = [DVec3::ZERO; 4];
         for k in 0..4 {
             let up = heights[k].clamp(mean - most, mean + most);
@@ -77,7 +77,7 @@ impl InsetSite {
         }
         let center = corners.iter().sum::<DVec3>() / 4.0;
         let reaches = corners.map(|p| (p - center).dot(self.direction));
-        let steep = self.direction.dot(normal).max(LEAST_STEEP);
+        let steep = self.direction.dot(normal).max(MIN_STEEP);
         InsetShape {
             center,
             corners,
@@ -125,15 +125,15 @@ impl InsetSite {
     }
 }
 
-/// A direction turned up to [`LEAST_STEEP`] from the surface's normal.
+/// A direction turned up to [`MIN_STEEP`] from the surface's normal.
 pub(crate) fn not_too_steep(direction: DVec3, normal: DVec3) -> DVec3 {
     let up = direction.dot(normal);
-    if up >= LEAST_STEEP {
+    if up >= MIN_STEEP {
         return direction;
     }
     let flat = (direction - normal * up).try_normalize();
     let flat = flat.unwrap_or_else(|| normal.any_orthonormal_vector());
-    normal * LEAST_STEEP + flat * (1.0 - LEAST_STEEP * LEAST_STEEP).sqrt()
+    normal * MIN_STEEP + flat * (1.0 - MIN_STEEP * MIN_STEEP).sqrt()
 }
 
 #[cfg(test)]

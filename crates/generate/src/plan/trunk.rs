@@ -6,7 +6,7 @@ use super::planner::Planner;
 /// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
 const STRAIGHTNESS: f64 = 0.5;
 /// A branch may be this much thicker than its trunk.
-const MOST_THICK: f64 = 1.05;
+const MAX_THICK: f64 = 1.05;
 /// A branch that forks again within this many of its radii is not clear of its trunk by then.
 const SOON: f64 = 4.0;
 
@@ -94,6 +94,6 @@ impl Planner<'_> {
             return false;
         }
         let mut others = self.children.of(fork).iter().filter(|&&c| c != main);
-        others.all(|&child| self.base.node(child).radius < MOST_THICK * trunk)
+        others.all(|&child| self.base.node(child).radius < MAX_THICK * trunk)
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::cone::{RoundCone, distance, outwards};
 use super::polyline::Polyline;
-use super::shape::{InsetShape, InsetSite, LEAST_STEEP, not_too_steep};
+use super::shape::{InsetShape, InsetSite, MIN_STEEP, not_too_steep};
 
 /// Stretch of the trunk that is looked at to either side, in its radii.
 const TRUNK_REACH: f64 = 8.0;
@@ -14,9 +14,9 @@ const TRUNK_REACH: f64 = 8.0;
 const BRANCH_REACH: f64 = 12.0;
 const FARTHEST: f64 = 80.0;
 /// Steps of the walk out of the trunk at most: thin branches of thick trunks take finer ones.
-const MOST_STEPS: f64 = 2000.0;
+const MAX_STEPS: f64 = 2000.0;
 /// A branch that is thicker than this share of its trunk, where it leaves it, gets a joint.
-const MOST_RATIO: f64 = 1.2;
+const MAX_RATIO: f64 = 1.2;
 
 /// A branch on a trunk.
 #[derive(Clone, Debug)]
@@ -94,11 +94,11 @@ impl Branch<'_> {
         let around = [around[0].max(0.0), around[1].min(trunk.length())];
         let foot = trunk.foot(exit, around);
         let trunk_radius = trunk.radius(foot);
-        if self.radius >= MOST_RATIO * trunk_radius {
+        if self.radius >= MAX_RATIO * trunk_radius {
             return Err(NoZone::NoRoom);
         }
         let tangent = trunk.tangent(foot, 0.5 * trunk_radius);
-        let slant = 1.0 / direction.dot(normal).max(LEAST_STEEP);
+        let slant = 1.0 / direction.dot(normal).max(MIN_STEEP);
         let leaning = direction.dot(tangent);
         let stretch = slant.powf(if leaning.abs() > 0.3 { 1.0 } else { 0.3 });
         let half = (self.radius * (stretch + 0.5)).max(0.5 * trunk_radius);
@@ -168,7 +168,7 @@ impl Branch<'_> {
         outside: impl Fn(DVec3) -> f64,
     ) -> Result<f64, NoZone> {
         let reach = self.path.length().min(most * trunk_radius);
-        let step = (0.25 * self.radius.min(trunk_radius)).max(most * trunk_radius / MOST_STEPS);
+        let step = (0.25 * self.radius.min(trunk_radius)).max(most * trunk_radius / MAX_STEPS);
         let lasting = (2.0 * trunk_radius / step) as usize + 1;
         let count = (reach / step).ceil() as usize;
         let (mut first, mut inside) = (None, None);

@@ -2,7 +2,7 @@
 //!
 //! A ring's **position** is 0 on the soma's sphere and 1 at the first point outside it; between the
 //! two it lies on the ray from the soma's center. Beyond 1 it follows the traced path: 2 is as far
-//! beyond the first point as that is from the sphere, at least [`LEAST_BEYOND`] radii. What the ring
+//! beyond the first point as that is from the sphere, at least [`MIN_BEYOND`] radii. What the ring
 //! has passed becomes a part of the soma.
 //!
 //! A neurite without a request has its ring at its first point, where that is near and unbranched, else
@@ -20,9 +20,9 @@ use crate::{GenerateOptions, SomaMethod, SphereKind};
 
 /// Least way from position 1 to 2, in radii of the soma: many tracings begin on its sphere, where
 /// twice nothing is nothing.
-const LEAST_BEYOND: f64 = 0.5;
+const MIN_BEYOND: f64 = 0.5;
 /// Least way between a ring and a fork or an end beyond it, in radii of the thicker one.
-const LEAST_WAY: f64 = 1.5;
+const MIN_WAY: f64 = 1.5;
 /// A neurite whose radius is below this share of its soma's leaves it through an inset: pulled to a
 /// ring this small, a quad of the soma creases like a star. Thicker ones pull the soma out towards them,
 /// as in García-Cantero et al. 2017; at 0.2 most real somata would stay plain spheres.
@@ -30,7 +30,7 @@ const THIN: f64 = 0.1;
 /// Height of an inset's corners over the soma, in radii of the neurite.
 pub(crate) const SOMA_LIFT: f64 = 0.4;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
-const LEAST_OUTWARDS: f64 = 0.5;
+const MIN_OUTWARDS: f64 = 0.5;
 
 /// Distance of an inset's ring from the soma's center, whose corners stand over a surface at such a distance.
 pub(crate) fn over_surface(surface: f64, radius: f64) -> f64 {
@@ -255,7 +255,7 @@ impl<'a> Stem<'a> {
         }
         // The first points are too near: along the path to where it is free.
         let way = at + 0.5 * radius - self.distance;
-        let unit = self.gap().max(LEAST_BEYOND * soma);
+        let unit = self.gap().max(MIN_BEYOND * soma);
         let site = (self.branches == 1).then(|| self.on_path(1.0 + way / unit, 1.35 * soma))?;
         let center = site
             .added
@@ -277,7 +277,7 @@ impl<'a> Stem<'a> {
 
     /// A ring cannot be on a fork.
     fn before_fork(&self, at: f64) -> f64 {
-        let free = self.distance - LEAST_WAY * self.skeleton.node(self.root).radius;
+        let free = self.distance - MIN_WAY * self.skeleton.node(self.root).radius;
         match self.branches {
             0 | 1 => at,
             _ => at.min(free.max(self.soma_sphere.radius + 0.4 * self.gap())),
@@ -286,7 +286,7 @@ impl<'a> Stem<'a> {
 
     /// Beyond the first point, but not up to the next fork or end, nor where the path turns back.
     fn on_path(&self, position: f64, farthest: f64) -> Site {
-        let unit = self.gap().max(LEAST_BEYOND * self.soma_sphere.radius);
+        let unit = self.gap().max(MIN_BEYOND * self.soma_sphere.radius);
         let most = (position - 1.0) * unit;
         let mut left = most.min(self.free_way(most, farthest));
         let reached = 1.0 + left / unit;
@@ -318,15 +318,15 @@ impl<'a> Stem<'a> {
             let node = self.skeleton.node(here);
             thickest = thickest.max(node.radius);
             let [next] = *self.children.of(here) else {
-                return (way - LEAST_WAY * thickest).max(0.5 * way);
+                return (way - MIN_WAY * thickest).max(0.5 * way);
             };
-            if way > most + LEAST_WAY * thickest {
+            if way > most + MIN_WAY * thickest {
                 return way;
             }
             let from = node.center - self.soma_sphere.center;
             let step = self.skeleton.node(next).center - node.center;
             let outwards = step.normalize_or_zero().dot(from.normalize_or_zero());
-            if outwards < LEAST_OUTWARDS {
+            if outwards < MIN_OUTWARDS {
                 return way;
             }
             if (from + step).length() > farthest {

@@ -65,7 +65,7 @@ const WIDEST: f64 = 0.6;
 /// Free angle between two rings, as a share of the sum of their own.
 const GAP: f64 = 1.25;
 /// Free angle between two rings, however thin (radians).
-pub(crate) const LEAST_GAP: f64 = 0.05;
+pub(crate) const MIN_GAP: f64 = 0.05;
 /// A crowded ring is made smaller down to this share before directions give way.
 const SMALLEST: f64 = 0.55;
 
@@ -314,7 +314,7 @@ mod tests {
         let mut crowd: Vec<Insertion> = (0..12)
             .map(|i| insertion(DVec3::new(0.02 * f64::from(i), 1.0, 0.0), 0.2))
             .collect();
-        let (smaller, turned) = make_room(&mut crowd, LEAST_GAP);
+        let (smaller, turned) = make_room(&mut crowd, MIN_GAP);
         assert!(smaller > 0 && turned > 0);
         for i in 0..crowd.len() {
             for j in 0..i {

@@ -14,7 +14,7 @@ use crate::tracing::{NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
 /// Stems that a soma may have before any are gathered.
-const MOST_STEMS: usize = 40;
+const MAX_STEMS: usize = 40;
 /// Least angle between two trunks (radians): at most 58 disks of this angle fit on a sphere.
 const APART: f64 = 0.5;
 
@@ -32,7 +32,7 @@ pub(crate) fn gather(
     }
     let mut bundles = Vec::new();
     for (soma, stems) in stems {
-        if let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| stems.len() > MOST_STEMS)
+        if let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| stems.len() > MAX_STEMS)
         {
             let near = bundle(skeleton, &soma_sphere, stems).into_iter();
             bundles.extend(near.filter(|b| b.len() > 1).map(|b| (soma, soma_sphere, b)));

@@ -102,7 +102,7 @@ pub(crate) fn rebuild(request: &SomaRequest, traced: &[Insertion]) -> SomaSurfac
         if smaller {
             insertions.iter_mut().for_each(|i| i.radius *= 0.7);
         }
-        let gap = insertion_quads::LEAST_GAP * f64::from(2_u32.pow(attempt));
+        let gap = insertion_quads::MIN_GAP * f64::from(2_u32.pow(attempt));
         let (shrunk, turned) = insertion_quads::make_room(&mut insertions, gap);
         let shrunk = if smaller { traced.len() } else { shrunk };
         let reference = reference(request.kind, level, request.poisson);

@@ -66,17 +66,17 @@ fn mark_run(children: &Children, mut node: u32, keep: &mut [bool]) {
 
 /// A twig is looked for inside this many of its siblings, the thickest ones: what is buried lies inside a
 /// thick neurite, and a fork of thousands costs no square of them.
-const MOST_SIBLINGS: usize = 16;
+const MAX_SIBLINGS: usize = 16;
 
 fn thickest(skeleton: &Skeleton, branches: &[u32]) -> Vec<u32> {
     let mut thickest = branches.to_vec();
-    if thickest.len() > MOST_SIBLINGS {
+    if thickest.len() > MAX_SIBLINGS {
         let thinner = |a: &u32, b: &u32| {
             let radius = |n: u32| skeleton.node(n).radius;
             radius(*b).total_cmp(&radius(*a)).then(a.cmp(b))
         };
-        thickest.select_nth_unstable_by(MOST_SIBLINGS, thinner);
-        thickest.truncate(MOST_SIBLINGS);
+        thickest.select_nth_unstable_by(MAX_SIBLINGS, thinner);
+        thickest.truncate(MAX_SIBLINGS);
     }
     thickest
 }

@@ -14,9 +14,9 @@ const CLEARANCE: f64 = 0.14;
 /// Widest half of a quad, around the trunk (72°).
 const WIDEST: f64 = 1.257;
 /// A quad turns at most this far from where its ring stands (40°).
-const MOST_TURN: f64 = 0.7;
+const MAX_TURN: f64 = 0.7;
 /// A corner moves at most this far where several branches pull.
-const MOST_PULL: f64 = 0.6;
+const MAX_PULL: f64 = 0.6;
 /// Free angle between a branch and the side of its quad (3°).
 const INSIDE: f64 = 0.052;
 
@@ -124,7 +124,7 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
         [] => QUARTERS,
         [one] => {
             let middle = FRAC_PI_4 + one.side as f64 * FRAC_PI_2;
-            let turn = wrap(at(one) - middle).clamp(-MOST_TURN, MOST_TURN);
+            let turn = wrap(at(one) - middle).clamp(-MAX_TURN, MAX_TURN);
             // The quad's own two corners about the branch, the other two evenly in the rest.
             let rest = TAU - 2.0 * one.half;
             let around = [
@@ -150,7 +150,7 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
             [0, 1, 2, 3].map(|k| {
                 let (sum, count) = pulls[k];
                 let pull = if count > 0.0 { sum / count } else { 0.0 };
-                QUARTERS[k] + f64::clamp(pull, -MOST_PULL, MOST_PULL)
+                QUARTERS[k] + f64::clamp(pull, -MAX_PULL, MAX_PULL)
             })
         }
     }

@@ -14,7 +14,7 @@ use proptest::test_runner::RngSeed;
 /// Levels at which surfaces are looked at: between the corners of rings, and finely.
 const LEVELS: [u32; 4] = [1, 2, 4, 8];
 /// No point of the surface is farther from the box around the tracing than this many radii of the nearest point.
-const MOST_RADII: f32 = 2.0;
+const MAX_RADII: f32 = 2.0;
 
 /// A step of a path: how far it goes in radii, by how much it turns before that (radians), about which axis, aside by
 /// how much (µm), and the factor of the radius from here on.
@@ -83,7 +83,7 @@ fn fault(cell: &Morphology, generated: &Generated) -> Option<String> {
         // A fork may be meshed thicker than it was traced.
         let meshed = tracing.iter().map(|point| (point.center, point.radius));
         let points = traced.chain(meshed);
-        let reaches = points.map(|(place, radius)| sign * place + MOST_RADII * radius);
+        let reaches = points.map(|(place, radius)| sign * place + MAX_RADII * radius);
         reaches.reduce(Vec3::max).unwrap_or_default()
     };
     let (low, high) = (-most(-1.0), most(1.0));

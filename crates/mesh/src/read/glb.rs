@@ -104,7 +104,7 @@ struct Shared<'a> {
 
 /// Different attributes in a mesh that are compared with those of the next primitive; files of thousands would make
 /// it slow.
-const MOST_SHARED: usize = 64;
+const MAX_SHARED: usize = 64;
 
 struct Scene<'a> {
     root: &'a Value,
@@ -142,7 +142,7 @@ impl Scene<'_> {
                         Some(&shared) => shared,
                         None => self.vertices(attributes, world_from_node, mesh)?,
                     };
-                    if known.is_none() && read.len() < MOST_SHARED {
+                    if known.is_none() && read.len() < MAX_SHARED {
                         read.push(shared);
                     }
                     self.faces(primitive, shared, world_from_node, mesh)?;

@@ -8,7 +8,7 @@ use super::{Node, Oddity};
 /// Two somata whose centers are nearer than this share of the larger radius are one: no two cells share so much.
 const ONE_SOMA: f64 = 0.5;
 /// Somata that others are compared with: a file with more has others than neurons.
-const MOST_SOMATA: usize = 64;
+const MAX_SOMATA: usize = 64;
 
 impl Somata {
     /// Somata in the same place become one: the first, that is the thickest.
@@ -32,7 +32,7 @@ impl Somata {
                     own.position.distance(other.position) < reach
                 })
             };
-            let same = kept.iter().take(MOST_SOMATA).position(is_same);
+            let same = kept.iter().take(MAX_SOMATA).position(is_same);
             match same {
                 None => {
                     for &member in &members {
@@ -76,10 +76,10 @@ impl RootsInSomata {
             3 => members[..1].to_vec(),
             _ => members.clone(),
         };
-        let members = somata.members.iter().take(MOST_SOMATA).flat_map(spheres);
+        let members = somata.members.iter().take(MAX_SOMATA).flat_map(spheres);
         let members: Vec<u32> = members
             .filter(|&member| nodes[member as usize].radius > 0.0)
-            .take(MOST_SOMATA)
+            .take(MAX_SOMATA)
             .collect();
         let mut found = Vec::new();
         if members.is_empty() {

@@ -17,7 +17,7 @@ use super::spline::Spline;
 const KNOTS_APART: f64 = 0.01;
 /// A smoothing length of more than so many lengths of the line changes nothing: an arc keeps 5·10⁻⁴ of its
 /// height.
-const MOST_LINES: f64 = 3.0;
+const MAX_LINES: f64 = 3.0;
 /// Samples nearer than this share of the line are in one place, however short the smoothing length.
 const IN_ONE_PLACE: f64 = 1e-12;
 
@@ -52,7 +52,7 @@ impl Line {
             .last()
             .copied()
             .filter(|&line| line > 0.0 && line.is_finite())?;
-        let length = length.min(MOST_LINES * line);
+        let length = length.min(MAX_LINES * line);
         let sharing = Sharing {
             samples: near_one_another(&places, (KNOTS_APART * length).max(IN_ONE_PLACE * line)),
             weights: weights(steps),

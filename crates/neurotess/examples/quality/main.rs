@@ -25,7 +25,7 @@ mod sections;
 mod tree;
 
 /// Most patches of a part that is packed for the device.
-const MOST_PATCHES: usize = 1 << 20;
+const MAX_PATCHES: usize = 1 << 20;
 /// Runs of which the fastest counts.
 const RUNS: usize = 3;
 
@@ -82,7 +82,7 @@ fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
 /// Bytes on the device for each tracing point outside somata.
 fn bytes_per_point(mesh: &CoarseMesh) -> f64 {
     let keys = vec![0; mesh.tracing.len()];
-    let parts = pack(mesh, &keys, &[], MOST_PATCHES);
+    let parts = pack(mesh, &keys, &[], MAX_PATCHES);
     let words: usize = parts.iter().map(|part| part.packed.len()).sum();
     let tracing = mesh.tracing.iter();
     let points = tracing

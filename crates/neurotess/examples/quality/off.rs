@@ -15,7 +15,7 @@ const OWN: f32 = 0.6;
 /// Cosine of 30°.
 const OFF: f32 = 0.866_025_4;
 /// Facets without which a fork is not judged.
-const LEAST_FACETS: usize = 10;
+const MIN_FACETS: usize = 10;
 
 /// The mean over all forks.
 pub(crate) fn share(positions: &[Vec3], triangles: &[[u32; 3]], tree: &Tree) -> f64 {
@@ -78,7 +78,7 @@ fn of_fork(facets: &[Facet], tree: &Tree, fork: usize) -> Option<f64> {
         facets.partition_point(|facet| facet.center.x < center.x + side * REACH * radius)
     });
     let own: Vec<&Facet> = facets[first..end].iter().filter(is_own).collect();
-    if own.len() < LEAST_FACETS {
+    if own.len() < MIN_FACETS {
         return None;
     }
     let blended = |place: Vec3| {

@@ -64,7 +64,7 @@ impl CenterLine {
 /// and no limit with the example `fidelity`: the largest that keeps the median distance to the
 /// traced cones under 0.05 of the median radius on every real cell (no limit: 0.25 on Cha-F-700113,
 /// 0.20 on IF4_140201). The price is visible corners on thin axons with long segments.
-pub(crate) const MOST_SWAY: f32 = 0.12;
+pub(crate) const MAX_SWAY: f32 = 0.12;
 
 /// Tangents of the center line: the directions at its ends times the segment's length, so that it
 /// makes no loops, shortened where it would sway too far. At a joint the segment itself, since the
@@ -76,7 +76,7 @@ pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
     let way = b.center - a.center;
     let length = way.length();
     let direction = way / length.max(f32::MIN_POSITIVE);
-    let most = MOST_SWAY * a.radius.min(b.radius) * (27.0 / 4.0);
+    let most = MAX_SWAY * a.radius.min(b.radius) * (27.0 / 4.0);
     let tangent = |corner: &Corner| {
         if corner.role == Role::Joint {
             return way;

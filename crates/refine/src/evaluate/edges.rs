@@ -51,7 +51,7 @@ impl OverLength {
 /// between two rings. Where a path turns back within its own tube, the radials of two rings cancel: what is left of the
 /// offsets of a thick ring and a thin one, divided by next to nothing, would be anywhere. At 1.0 a third of a per cent of
 /// the vertices of real cells are shortened, at forks whose corners are obtuse; at 1.2 a fiftieth of a per cent.
-pub(crate) const MOST_OFFSET: f32 = 1.2;
+pub(crate) const MAX_OFFSET: f32 = 1.2;
 
 /// The longer of the offsets of two corners of a ring.
 pub(super) fn longer(a: Vec3, b: Vec3) -> f32 {
@@ -60,7 +60,7 @@ pub(super) fn longer(a: Vec3, b: Vec3) -> f32 {
 
 /// Square of the greatest distance from the center line at y, between rings with these longest offsets.
 pub(super) fn most_squared(near: f32, far: f32, y: f32) -> f32 {
-    let most = MOST_OFFSET * (near * (1.0 - y) + far * y);
+    let most = MAX_OFFSET * (near * (1.0 - y) + far * y);
     most * most
 }
 

@@ -12,7 +12,7 @@ pub(crate) type Rectangle = [[i32; 2]; 2];
 /// How closely (sub-pixels) it is searched for.
 const STEP: i32 = 8;
 /// Most parts of a source that is asked: an answer for as many takes a millisecond or two.
-const MOST_PARTS: usize = 100_000;
+const MAX_PARTS: usize = 100_000;
 
 /// The rectangle in a picture and around it in which anything shows, or all of it if the source has very many parts;
 /// none if nothing shows. `widened`: how far
@@ -23,7 +23,7 @@ pub(crate) fn extent(source: &dyn VertexSource, whole: &Frame, widened: u32) -> 
     let around = whole.around as i32 + spare;
     let all = whole.size.map(|n| [-around, n as i32 + around]);
     let shows = |rectangle: Rectangle| source.shows(&part(whole, rectangle));
-    if source.parts() > MOST_PARTS {
+    if source.parts() > MAX_PARTS {
         return Some(all);
     }
     shows(all).then(|| {

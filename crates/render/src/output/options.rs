@@ -49,7 +49,7 @@ impl Occlusion {
     pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
         let height = f64::from(height);
         let sub_pixel = camera.pixel_at_target(height);
-        let most = (0.09 * height).min(MOST_MARGIN).ceil();
+        let most = (0.09 * height).min(MAX_MARGIN).ceil();
         let radius = match self {
             Self::Fit => 0.08 * height * sub_pixel,
             Self::Within(radius) => f64::from(radius),
@@ -77,7 +77,7 @@ impl Default for PictureOptions {
 const TILE: u32 = 1536;
 /// Greatest reach (sub-pixels) of ambient occlusion: with more, margins would take up most of a
 /// tile.
-const MOST_MARGIN: f64 = 360.0;
+const MAX_MARGIN: f64 = 360.0;
 /// Numbers of samples that a pixel can have.
 pub const SAMPLES: [u32; 5] = [1, 4, 16, 36, 64];
 /// Greatest width or height of a picture: positions are f32 and keep 1/256 of a sub-pixel.

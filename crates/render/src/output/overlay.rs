@@ -250,11 +250,11 @@ struct Seen {
 }
 
 /// Most spheres that are considered: enough to see which corners are empty.
-const MOST_PLACES: usize = 200_000;
+const MAX_PLACES: usize = 200_000;
 
 impl Seen {
     fn new(size: [u32; 2], cameras: &[Camera], spheres: &[BoundingSphere]) -> Self {
-        let step = (cameras.len() * spheres.len() / MOST_PLACES).max(1);
+        let step = (cameras.len() * spheres.len() / MAX_PLACES).max(1);
         let pairs = cameras
             .iter()
             .flat_map(|c| spheres.iter().map(move |b| (c, b)));

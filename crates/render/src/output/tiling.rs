@@ -82,7 +82,7 @@ impl Tiling {
     /// The picture's bands from above.
     pub(crate) fn bands(&self) -> Vec<Band> {
         let [width, height] = self.frame.size.map(|n| n / self.scale);
-        let most = (MOST_BAND / width.max(1)).max(1);
+        let most = (MAX_BAND / width.max(1)).max(1);
         let down = self.sides.as_ref().map(|[_, down]| down);
         let mut bands = Vec::new();
         let mut below = 0;
@@ -158,7 +158,7 @@ impl Band {
 }
 
 /// Most pixels of a band that has rows in which nothing shows.
-const MOST_BAND: u32 = 1 << 22;
+const MAX_BAND: u32 = 1 << 22;
 
 impl PictureOptions {
     /// Number of tiles of a picture.
@@ -262,14 +262,14 @@ struct Most {
 }
 
 /// Fewest pixels kept of a tile along a side, however small tiles should be.
-const LEAST_STEP: u32 = 32;
+const MIN_STEP: u32 = 32;
 
 /// The division that draws the fewest sub-pixels, of those whose tiles are small enough.
 fn divided(shown: &[Shown; 2], most: Most) -> [Side; 2] {
-    let least = LEAST_STEP * shown[0].scale + 2 * shown[0].margin;
+    let least = MIN_STEP * shown[0].scale + 2 * shown[0].margin;
     let area = u64::from(most.square.max(least)).pow(2);
     let longest = most.side.max(least);
-    let finest = |k: usize| (shown[k].pixels.len() as u32).div_ceil(LEAST_STEP);
+    let finest = |k: usize| (shown[k].pixels.len() as u32).div_ceil(MIN_STEP);
     let pixels = |across: &Side, down: &Side| u64::from(across.width) * u64::from(down.width);
     let with_rows = |across: u32| {
         let across = shown[0].divided(across);
@@ -320,7 +320,7 @@ mod tests {
                 for square in [97, 333, 1536] {
                     let most = Most { square, ..ROOMY };
                     let [across, down] = sides(size, scale, margin, most);
-                    let least = u64::from(LEAST_STEP * scale + 2 * margin);
+                    let least = u64::from(MIN_STEP * scale + 2 * margin);
                     let area = u64::from(square).max(least).pow(2);
                     assert!(
                         u64::from(across.width) * u64::from(down.width) <= area,

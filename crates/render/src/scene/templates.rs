@@ -16,7 +16,7 @@ pub(crate) const CLUSTER: usize = 64;
 /// Number of u32s of an explicit vertex: see refine's template.wgsl.
 const EXPLICIT_VERTEX_U32S: u32 = 3;
 /// Most slots for patches in a part: as many as a batch has, so that each part fits a batch.
-pub(crate) const MOST_PATCHES: usize = 1 << 20;
+pub(crate) const MAX_PATCHES: usize = 1 << 20;
 /// Most u32s that a part takes per patch: an explicit patch with four explicit vertices and their
 /// anchors.
 const U32S_OF_PATCH: usize = 2 + 4 * (3 + 8);
@@ -140,7 +140,7 @@ impl Templates {
     ) -> Result<Vec<TemplateId>, DeviceError> {
         let layout = layout(&gpu.device);
         let most_u32s = usize::try_from(gpu.largest_binding() / 4).unwrap_or(usize::MAX);
-        let most = (most_u32s / U32S_OF_PATCH).clamp(CLUSTER, MOST_PATCHES);
+        let most = (most_u32s / U32S_OF_PATCH).clamp(CLUSTER, MAX_PATCHES);
         let mut packed = Vec::new();
         let first = self.templates.len();
         for template in templates {

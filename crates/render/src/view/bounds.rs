@@ -69,12 +69,12 @@ fn sphere(mesh: &CoarseMesh, patches: &[Patch]) -> BoundingSphere {
 }
 
 /// Most vertices of a surface that a camera is fitted to, beside its farthest ones.
-const MOST_POINTS: usize = 20_000;
+const MAX_POINTS: usize = 20_000;
 
 /// Points of a surface, as spheres of radius 0, that a camera is fitted to: all vertices, or of more than 20,000 some and
 /// the farthest in 26 directions. `scale`: micrometers of a unit of its coordinates.
 pub fn surface_points(mesh: &SurfaceMesh, scale: f64) -> Vec<BoundingSphere> {
-    let step = mesh.vertices.len().div_ceil(MOST_POINTS).max(1);
+    let step = mesh.vertices.len().div_ceil(MAX_POINTS).max(1);
     let mut kept: Vec<Vec3> = mesh
         .vertices
         .iter()

@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [600, 600];
 /// Frames that are counted.
 const FRAMES: u64 = 10;
 /// Most pages of a frame. It takes thousands where the triangles' memory is asked for anew.
-const MOST_PAGES: u64 = 500;
+const MAX_PAGES: u64 = 500;
 
 /// The need of a driver that draws on the processor, and of glibc's allocator as it is by default.
 fn software() -> Result<(), String> {
@@ -72,7 +72,7 @@ fn frames_use_the_memory_of_the_frames_before() {
     let each = (pages() - before) / FRAMES;
     note!("{each} pages a frame, {} triangles", source.shown());
     assert!(source.shown() > 100_000, "{}", source.shown());
-    assert!(each < MOST_PAGES, "{each} pages a frame");
+    assert!(each < MAX_PAGES, "{each} pages a frame");
 }
 
 neurotess_testing::main!();

@@ -64,7 +64,7 @@ const DENSITY: f64 = 1e-4;
 /// Depth of the whole (µm).
 const DEPTH: f64 = 2000.0;
 /// Least side of the floor (µm): a few cells do not stand in one another.
-const LEAST_SIDE: f64 = 200.0;
+const MIN_SIDE: f64 = 200.0;
 
 /// A morphology of the circuit: its name, and how to grow it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ fn morphologies(options: &CircuitOptions) -> Vec<CircuitMorphology> {
 fn population(options: &CircuitOptions, morphologies: &[CircuitMorphology]) -> Population {
     let n = options.neurons;
     let mut random = Random::new(options.seed, 101);
-    let side = (n as f64 / (DENSITY * DEPTH)).sqrt().max(LEAST_SIDE);
+    let side = (n as f64 / (DENSITY * DEPTH)).sqrt().max(MIN_SIDE);
     let of_kind: BTreeMap<Kind, Vec<u32>> = KINDS
         .into_iter()
         .map(|kind| {

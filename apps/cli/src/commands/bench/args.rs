@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use neurotess::render::{DEFAULT_BUDGET, MOST_BUDGET};
+use neurotess::render::{DEFAULT_BUDGET, MAX_BUDGET};
 
 use crate::options::size::Size;
 
@@ -55,7 +55,7 @@ pub(crate) struct StreamingArgs {
     pub(crate) share: f64,
     /// Most triangles of a frame
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
-          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BUDGET)))]
     pub(crate) budget: u32,
     /// Width and height (pixels)
     #[arg(long, value_name = "WxH", default_value = "1280x960")]
@@ -109,7 +109,7 @@ pub(crate) struct StaticArgs {
     pub(crate) points: u32,
     /// Most triangles of a picture
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
-          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BUDGET)))]
     pub(crate) budget: u32,
     /// Width and height (pixels)
     #[arg(long, value_name = "WxH", default_value = "1280x820")]
@@ -147,7 +147,7 @@ pub(crate) struct ExplorationArgs {
     pub(crate) points: u32,
     /// Most triangles of a frame
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
-          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BUDGET)))]
     pub(crate) budget: u32,
     /// Largest scene that is refined adaptively too, for comparison
     #[arg(long, value_name = "N", default_value_t = 1000)]

@@ -83,7 +83,7 @@ pub(crate) struct BenchScene {
 }
 
 /// Most neurons that the camera is fitted to in parts.
-const MOST_IN_PARTS: u32 = 20_000;
+const MAX_IN_PARTS: u32 = 20_000;
 
 impl BenchScene {
     pub(crate) fn new(neurons: &[Neuron], count: u32, size: [u32; 2]) -> anyhow::Result<Self> {
@@ -101,7 +101,7 @@ impl BenchScene {
             .flat_map(|&(neuron, translation)| {
                 let neuron = &neurons[neuron];
                 // Spheres of parts fit the picture tightly, and take gigabytes for a million.
-                let spheres = match count > MOST_IN_PARTS {
+                let spheres = match count > MAX_IN_PARTS {
                     true => &neuron.whole,
                     false => &neuron.spheres,
                 };

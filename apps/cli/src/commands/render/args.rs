@@ -7,7 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, ValueEnum};
 use neurotess::coloring::OwnColors;
 use neurotess::render::color::{ColorMap, Palette, Rgb};
-use neurotess::render::{Look, MOST_BUDGET};
+use neurotess::render::{Look, MAX_BUDGET};
 
 use super::palette::{PaletteArg, PaletteParser, SetColor};
 use super::times::{MOST, times};
@@ -157,7 +157,7 @@ pub(crate) struct RenderArgs {
     pub(crate) pixels: Option<f64>,
     /// Most triangles of --lod exploration, for those that show most [default: 100000]
     #[arg(long, value_name = "N", help_heading = "Refinement",
-          value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_BUDGET)))]
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BUDGET)))]
     pub(crate) budget: Option<u32>,
     /// Look from this side; the camera fits the scene
     #[arg(long, value_enum, default_value_t = ViewSide::Front, value_name = "SIDE",

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::cells::{MANY, MeshedCell};
 
 /// Most spheres of a scene, which take milliseconds to fit a camera to and to test tiles with.
-const MOST_SPHERES: usize = 400_000;
+const MAX_SPHERES: usize = 400_000;
 
 /// Fewest of a cell; among so many cells that the shape of a single one hardly matters, fewer.
 const FEWEST: usize = 16;
@@ -35,7 +35,7 @@ pub(crate) fn covering(
         true => FEWEST,
         false => FEWEST_OF_MANY,
     };
-    let most = (MOST_SPHERES / placements.len().max(1)).max(fewest);
+    let most = (MAX_SPHERES / placements.len().max(1)).max(fewest);
     let own: Vec<Vec<BoundingSphere>> = cells
         .par_iter()
         .map(|cell| match &cell.bounds {

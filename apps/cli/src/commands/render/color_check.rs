@@ -61,10 +61,10 @@ fn is_there(name: &str, things: &[ColoredThing]) -> bool {
 }
 
 /// Most names that a warning lists.
-const MOST_NAMES: usize = 8;
+const MAX_NAMES: usize = 8;
 
 fn absent(name: &str, things: &[ColoredThing]) -> String {
-    let names = things.iter().take(MOST_NAMES);
+    let names = things.iter().take(MAX_NAMES);
     let mut names: Vec<String> = names.map(|thing| thing.target.to_string()).collect();
     if things.len() > names.len() {
         names.push("…".into());

@@ -12,7 +12,7 @@ use crate::model::plots::MeasureKey;
 use crate::model::save::SaveRequest;
 
 /// Least distance (µm) of the spheres of Sholl profiles.
-const LEAST_STEP: f64 = 0.01;
+const MIN_STEP: f64 = 0.01;
 
 impl State {
     /// The tracings of the selected cells, each once; of the only cell, if none is selected.
@@ -33,7 +33,7 @@ impl State {
         Some(MeasureKey {
             measure,
             step: match measure {
-                Measure::Sholl => form.step.max(LEAST_STEP),
+                Measure::Sholl => form.step.max(MIN_STEP),
                 _ => 1.0,
             },
             sources: sources.to_vec(),

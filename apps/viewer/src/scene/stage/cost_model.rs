@@ -16,8 +16,8 @@ const LIMIT_MS: f64 = 600.0;
 const EXPLORED_MS: f64 = 150.0;
 /// Triangles of a picture at rest in exploration mode: at first, at least and at most.
 const FIRST_BUDGET: u32 = 200_000;
-const LEAST_BUDGET: u32 = 50_000;
-const MOST_BUDGET: u32 = 2_000_000;
+const MIN_BUDGET: u32 = 50_000;
+const MAX_BUDGET: u32 = 2_000_000;
 /// Milliseconds of a slice for each patch in view, until it was measured: in software, and on a
 /// GPU.
 const SOFTWARE_PATCH_MS: f64 = 2.5e-4;
@@ -104,10 +104,10 @@ impl CostModel {
         let room = EXPLORED_MS / took;
         if room < 0.67 {
             let fits = f64::from(before) * room.max(0.25);
-            self.budget = (fits as u32).max(LEAST_BUDGET);
+            self.budget = (fits as u32).max(MIN_BUDGET);
         } else if room > 1.5 && requested > u64::from(before) {
             let fits = f64::from(before) * room.min(4.0);
-            self.budget = (fits as u32).min(MOST_BUDGET);
+            self.budget = (fits as u32).min(MAX_BUDGET);
         }
         f64::from(self.budget) > 1.2 * f64::from(before)
     }
@@ -229,11 +229,11 @@ mod tests {
         cost_model.note_explored(30.0);
         assert!(cost_model.adapt(u64::MAX) && cost_model.budget == 4 * FIRST_BUDGET);
         cost_model.note_explored(30.0);
-        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET);
+        assert!(cost_model.adapt(u64::MAX) && cost_model.budget == MAX_BUDGET);
         cost_model.note_explored(600.0);
-        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MAX_BUDGET / 4);
         cost_model.note_explored(140.0);
-        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MOST_BUDGET / 4);
+        assert!(!cost_model.adapt(u64::MAX) && cost_model.budget == MAX_BUDGET / 4);
         cost_model.note_explored(10.0);
         assert!(!cost_model.adapt(1_000), "all that is wanted is there");
     }

@@ -20,7 +20,7 @@ pub(super) const REST: Duration = Duration::from_millis(130);
 const SLICE_MS: f64 = 120.0;
 /// Most slices of a step: beyond a million patches each slice selects anew, so that many slices
 /// would take longer in all.
-const MOST_SLICES: f64 = 3.0;
+const MAX_SLICES: f64 = 3.0;
 
 /// The source of the picture at rest and the markers and meshes beside it, without borrowing the whole stage; none if exploration mode cannot
 /// draw it any more. `fine`: neurons that are then refined.
@@ -211,7 +211,7 @@ impl Stage {
             // For the next picture, since the slices of this one are fixed.
             let fitting = f64::from(self.pace.slices) * took / SLICE_MS;
             self.pace.slices =
-                ((f64::from(self.pace.slices) + fitting) / 2.0).clamp(1.0, MOST_SLICES) as u32;
+                ((f64::from(self.pace.slices) + fitting) / 2.0).clamp(1.0, MAX_SLICES) as u32;
         }
     }
 

@@ -27,7 +27,7 @@ use crate::model::settings::Settings;
 use crate::model::state::{Dialog, Effect, State};
 use crate::scene::stage::Stage;
 use crate::ui::file_panel::FilePanel;
-use crate::ui::input::{Input, MOST_PASSES};
+use crate::ui::input::{Input, MAX_PASSES};
 use crate::ui::motion::Motion;
 use crate::ui::panels::{self, Screen};
 use autosave::Autosave;
@@ -98,7 +98,7 @@ impl Viewer {
     ) -> Result<Self, DeviceError> {
         let waker = ctx.clone();
         ctx.add_plugin(Input::new());
-        ctx.options_mut(|options| options.max_passes = MOST_PASSES);
+        ctx.options_mut(|options| options.max_passes = MAX_PASSES);
         let stage = Stage::new(render)?;
         let mut state = State::new(settings.clone());
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || waker.request_repaint());

@@ -12,7 +12,7 @@ pub(super) enum Level {
 }
 
 /// Facets of a patch at the highest level.
-pub(super) const MOST_FACETS: usize = 32;
+pub(super) const MAX_FACETS: usize = 32;
 
 /// How all patches are cut into triangles.
 pub(super) struct Cut {

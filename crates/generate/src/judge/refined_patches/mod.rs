@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::judge::facets::{Bounds, Facet};
 use crate::judge::part::Part;
-use cut::{Cut, Level, MOST_FACETS};
+use cut::{Cut, Level, MAX_FACETS};
 pub(crate) use finer::FinerFaults;
 use seams::{Seams, numbers};
 
@@ -23,11 +23,11 @@ use seams::{Seams, numbers};
 const CROWDED: usize = 16;
 /// Facets are seen from one side if they face it by more than this: cosine of 72°, to stay clear of outlines
 /// that cross. With 90° little more time is saved, and cells with many folds have a few more of them.
-const LEAST_COS: f32 = 0.3;
+const MIN_COS: f32 = 0.3;
 
 /// Patches to be refined, and pairs to be searched, that are worth a thread.
-const LEAST_PATCHES: usize = 64;
-const LEAST_PAIRS: usize = 256;
+const MIN_PATCHES: usize = 64;
+const MIN_PAIRS: usize = 256;
 
 /// Faults between two patches, or of one patch with itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +107,7 @@ impl RefinedPatches {
 
     /// The pairs of patches that cross, in their order.
     fn crossings_of(&self, pairs: Vec<[u32; 2]>) -> Vec<Fault> {
-        let pairs = pairs.into_par_iter().with_min_len(LEAST_PAIRS);
+        let pairs = pairs.into_par_iter().with_min_len(MIN_PAIRS);
         let crossings = pairs.map(|patches| self.crossing(patches));
         crossings.filter(|fault| fault.count > 0).collect()
     }
@@ -230,7 +230,7 @@ impl RefinedPatches {
     fn refine(&self, patches: &[u32]) -> Vec<Facet> {
         let mut facets = vec![Facet::default(); self.cut.facets() * patches.len()];
         let of_patches = facets.par_chunks_mut(self.cut.facets());
-        let of_patches = of_patches.with_min_len(LEAST_PATCHES).zip(patches);
+        let of_patches = of_patches.with_min_len(MIN_PATCHES).zip(patches);
         of_patches.for_each_with(Vec::new(), |points, (facets, &patch)| {
             points.clear();
             self.patch_facets(patch as usize, points, facets);
@@ -261,7 +261,7 @@ impl RefinedPatches {
         }
         // Of patches side by side, few facets are near the other patch.
         let near = |patch: u32, facet: &Facet| facet.bounds.overlaps(&self.boxes[patch as usize]);
-        let mut others = [0; MOST_FACETS];
+        let mut others = [0; MAX_FACETS];
         let mut count = 0;
         for (i, _) in b.iter().enumerate().filter(|(_, f)| near(patches[0], f)) {
             others[count] = i;
@@ -286,7 +286,7 @@ impl RefinedPatches {
             return false;
         }
         let side = self.facing[a as usize] + self.facing[b as usize];
-        let least = LEAST_COS * side.length();
+        let least = MIN_COS * side.length();
         let mut facets = self.facets_of(a).iter().chain(self.facets_of(b));
         facets.all(|facet| facet.normal.dot(side) > least)
     }

@@ -13,17 +13,17 @@ use crate::judge::refined_patches::{Fault, RefinedPatches, count};
 
 /// Rounds of a stretch, and those without fewer faults after which it is left as it was best. Chosen with
 /// the example `forks`: twice as many find nothing more.
-const MOST_ROUNDS: usize = 14;
+const MAX_ROUNDS: usize = 14;
 const PATIENCE: usize = 4;
 /// Share of its radius that a ring at fault keeps in a round.
 const STEP: f32 = 0.84;
 /// A ring beside much thinner ones gives at least this share of what they give.
-const LEAST_WEIGHT: f32 = 0.2;
+const MIN_WEIGHT: f32 = 0.2;
 /// Least share of its radius that a ring keeps for the sake of folds: thinner ones look like pinches.
 const LEAST: f32 = 0.35;
 /// The same for tubes that cross and do not fold. That is hardly seen, as where siblings leave a fork side
 /// by side, and a tube much thinner than it was traced is.
-const LEAST_OF_CROSSING: f32 = 0.7;
+const MIN_OF_CROSSING: f32 = 0.7;
 /// The center moves by this many times what the radius loses, but no farther than these radii in all.
 const PUSH: f32 = 2.0;
 const FARTHEST: f32 = 0.7;
@@ -69,7 +69,7 @@ impl DrawIn {
         let before = count(&faults);
         let mut best = (before, self.drawn.clone());
         let mut rounds_since = 0;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             if best.0 == 0 || rounds_since == PATIENCE {
                 break;
             }
@@ -108,7 +108,7 @@ impl DrawIn {
             let before = drawn.scale;
             let least = match blame.folded {
                 true => LEAST,
-                false => LEAST_OF_CROSSING.min(before),
+                false => MIN_OF_CROSSING.min(before),
             };
             drawn.scale = (before * STEP.powf(blame.weight / blame.faults)).max(least);
             if ring.shifts() {
@@ -144,7 +144,7 @@ impl DrawIn {
                     let count = fault.count as f32;
                     slot.faults += count;
                     slot.folded |= fault.folded;
-                    slot.weight += count * share.clamp(LEAST_WEIGHT, 1.0);
+                    slot.weight += count * share.clamp(MIN_WEIGHT, 1.0);
                     let away = (point.center - middle).normalize_or_zero() * count;
                     if !others.contains(&ring) {
                         slot.away += away;

@@ -35,7 +35,7 @@ use stretches::Stretches;
 use suspects::Suspects;
 
 /// Patches of a stretch from which on it is left as it is.
-const MOST_PATCHES: usize = 4_000;
+const MAX_PATCHES: usize = 4_000;
 /// Patches around suspect rings are few if the stretch has this many times as many: then they are looked at alone
 /// first, since most stretches are sound.
 const FEW: usize = 2;
@@ -72,7 +72,7 @@ pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32], stop: Stop<'_
 /// The stretch drawn in; none if it has no faults, or cannot have fewer.
 fn draw_in(mesh: &CoarseMesh, stretches: &Stretches, number: usize) -> Option<DrawIn> {
     let patches = &stretches.patches[number];
-    if patches.len() > MOST_PATCHES {
+    if patches.len() > MAX_PATCHES {
         return None;
     }
     let suspect = &stretches.suspect[number];

@@ -12,7 +12,7 @@ use crate::plan;
 /// a tube comes back to itself after some thirty.
 const REACH: f32 = 40.0;
 /// But beside no more of them than this, so that crowds cost no square.
-const MOST_VISITED: usize = 400;
+const MAX_VISITED: usize = 400;
 /// Cones steeper than this may fold: change of radius over length.
 const STEEP: f32 = 1.0;
 /// Cosine of the angle between a ring's neighbors from which on its tube may fold: a turn of 110°.
@@ -86,7 +86,7 @@ fn pairs(mesh: &CoarseMesh, graph: &RingGraph) -> Vec<[u32; 2]> {
                 graph,
                 disks: &disks,
                 margins: &margins,
-                queue: Vec::with_capacity(MOST_VISITED + 8),
+                queue: Vec::with_capacity(MAX_VISITED + 8),
                 pairs: Vec::new(),
             };
             let end = (first + CHUNK as u32).min(count);
@@ -165,7 +165,7 @@ impl Walk<'_> {
             }
             // Beyond, the way back to here is too long.
             let left = farthest - way;
-            if left < 0.0 || apart > left * left || self.queue.len() > MOST_VISITED {
+            if left < 0.0 || apart > left * left || self.queue.len() > MAX_VISITED {
                 continue;
             }
             for (to, step) in self.graph.ways(here).filter(|&(to, _)| to != from) {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Rows and columns of a tile.
 const TILE: usize = 4;
 /// Columns that are factored one by one.
-const LEAST_SPLIT: usize = 8;
+const MIN_SPLIT: usize = 8;
 /// Columns that are subtracted at once: their rows stay in the processor's cache.
 const DEPTH: usize = 128;
 /// Columns that a sweep takes at once.
@@ -18,7 +18,7 @@ const SWEPT: usize = 4;
 /// Multiplications from which on columns are worth several threads: half a millisecond.
 const SIDE_BY_SIDE: usize = 1 << 21;
 /// A pivot below this share of its diagonal element is rounding: the matrix is singular.
-const LEAST_PIVOT: f64 = 1e-14;
+const MIN_PIVOT: f64 = 1e-14;
 
 /// Zeros to be added to. They are written here: pages that the system has yet to clear, and that are read first,
 /// would be made twice, and all threads stopped for it.
@@ -80,7 +80,7 @@ impl Columns {
         diagonal: &[f64],
         packed: &mut Vec<f64>,
     ) -> Option<()> {
-        if to - from <= LEAST_SPLIT {
+        if to - from <= MIN_SPLIT {
             return self.factor_one_by_one(from, to, diagonal);
         }
         let middle = from + (to - from).div_ceil(2 * TILE) * TILE;
@@ -108,7 +108,7 @@ impl Columns {
             }
             let pivot = column[0];
             // Also false where the pivot is no number.
-            let positive = pivot > LEAST_PIVOT * diagonal[k];
+            let positive = pivot > MIN_PIVOT * diagonal[k];
             if !positive {
                 return None;
             }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::{Clique, NO_NODE};
 
 /// Nodes that are not parted further.
-const LEAST_PARTED: usize = 24;
+const MIN_PARTED: usize = 24;
 
 /// Which nodes share an equation.
 pub(crate) struct Neighbors {
@@ -93,7 +93,7 @@ impl Dissection<'_> {
     /// Adds groups of these nodes; the number of the last one.
     fn add(&mut self, nodes: Vec<u32>) -> usize {
         let cut = match nodes.len() {
-            0..=LEAST_PARTED => None,
+            0..=MIN_PARTED => None,
             _ => self.best_cut(&nodes),
         };
         let group = match cut {

@@ -8,7 +8,7 @@ use super::boxes::{Bounds, Boxes};
 use super::geometry::closest;
 use super::paths::OnSegment;
 use super::rods::Rods;
-use super::search::{MOST_LOOKS, may_touch};
+use super::search::{MAX_LOOKS, may_touch};
 use crate::tracing::NONE;
 
 /// The branches as they are, to be asked about shorter ways.
@@ -44,7 +44,7 @@ impl Clearance {
         self.boxes.overlapping(&bounds, |other| {
             looks += 1;
             free = self.passes(from, to, other);
-            match free && looks < MOST_LOOKS {
+            match free && looks < MAX_LOOKS {
                 true => ControlFlow::Continue(()),
                 false => ControlFlow::Break(()),
             }

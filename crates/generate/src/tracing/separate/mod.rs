@@ -57,11 +57,11 @@ use search::{Margin, search};
 use spread::{GAP, Spread};
 
 /// Times that branches are moved apart: points that are left out again can make contacts.
-const MOST_ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
 /// Times that segments are cut: pieces can be nearer to one another than the whole.
-const MOST_CUTS: usize = 3;
+const MAX_CUTS: usize = 3;
 /// Points that may be added, for each traced one, and in any cell.
-const MOST_ADDED: (usize, usize) = (2, 4096);
+const MAX_ADDED: (usize, usize) = (2, 4096);
 /// A point whose free room is more than this many radii of the thicker one has as much as it likes.
 const ROOM: f64 = 2.0;
 
@@ -93,8 +93,8 @@ pub(crate) fn separate(
 
 fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, stop: Stop<'_>) -> Separation {
     let mut complete = true;
-    let mut may_add = MOST_ADDED.0 * rods.count() + MOST_ADDED.1;
-    for round in 0..MOST_ROUNDS {
+    let mut may_add = MAX_ADDED.0 * rods.count() + MAX_ADDED.1;
+    for round in 0..MAX_ROUNDS {
         let spread = spread_and_cut(rods, &mut may_add);
         let found = search(rods, &rods.centers(), Margin::NONE, None);
         complete &= found.complete;
@@ -131,7 +131,7 @@ fn spread_and_cut(rods: &mut Rods, may_add: &mut usize) -> Spread {
         Spread::new(rods, &now, &traced)
     };
     let mut now = spread(rods);
-    for _ in 0..MOST_CUTS {
+    for _ in 0..MAX_CUTS {
         if !cut::cut_near_contacts(rods, &now, may_add) {
             break;
         }

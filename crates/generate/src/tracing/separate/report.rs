@@ -164,10 +164,10 @@ impl<'a> Depths<'a> {
         let children = self.traced.children();
         let above = self.traced.node(segment).parent;
         let mut near = vec![segment];
-        near.extend(children.of(segment).iter().take(MOST_BESIDE));
+        near.extend(children.of(segment).iter().take(MAX_BESIDE));
         if above != NONE {
             near.push(above);
-            near.extend(children.of(above).iter().take(MOST_BESIDE));
+            near.extend(children.of(above).iter().take(MAX_BESIDE));
         }
         near
     }
@@ -202,7 +202,7 @@ impl<'a> Depths<'a> {
 }
 
 /// Branches of a fork that are looked at for places that hang together.
-const MOST_BESIDE: usize = 8;
+const MAX_BESIDE: usize = 8;
 
 fn traced(rods: &Rods, segment: u32) -> u32 {
     rods.points[segment as usize].traced_segment

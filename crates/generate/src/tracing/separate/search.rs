@@ -14,7 +14,7 @@ use super::rods::Rods;
 
 /// Two segments may touch if the way between them is at most this many times the sum of their radii: a
 /// branch leaves its parent's surface only after such a way.
-const MOST_WAY: f64 = 2.0;
+const MAX_WAY: f64 = 2.0;
 /// A thick fork hides the branches beside it: it counts with this many of its radii.
 const FORK: f64 = 1.5;
 /// A neurite may touch its own soma up to this way from it: so many of its radii, and of the soma's.
@@ -22,8 +22,8 @@ const OWN_WAY: (f64, f64) = (3.0, 0.25);
 /// The soma bulges towards its neurites: it reaches this many of its radii.
 pub(super) const SOMA_REACH: f64 = 1.1;
 /// Boxes that one segment looks at, at most, and contacts that it may have with segments after it.
-pub(super) const MOST_LOOKS: usize = 256;
-const MOST_CONTACTS: usize = 32;
+pub(super) const MAX_LOOKS: usize = 256;
+const MAX_CONTACTS: usize = 32;
 /// Boxes that all somata look at, for each segment of the cell.
 const SOMA_LOOKS: usize = 64;
 
@@ -124,7 +124,7 @@ pub(super) fn search(
 pub(super) fn may_touch(rods: &Rods, a: OnSegment, b: OnSegment, radii: f64) -> bool {
     rods.paths.way(a, b).is_some_and(|way| {
         let fork = way.fork.map_or(0.0, |fork| FORK * rods.radius(fork));
-        way.length <= MOST_WAY * radii.max(fork)
+        way.length <= MAX_WAY * radii.max(fork)
     })
 }
 
@@ -148,7 +148,7 @@ impl View<'_> {
                 return ControlFlow::Continue(());
             }
             looks += 1;
-            if looks > MOST_LOOKS || contacts.len() - before >= MOST_CONTACTS {
+            if looks > MAX_LOOKS || contacts.len() - before >= MAX_CONTACTS {
                 *complete = false;
                 return ControlFlow::Break(());
             }

@@ -20,7 +20,7 @@ pub(super) const CROSSED: f64 = 0.2;
 /// How far along its branch a course is judged, in sums of the radii.
 const COURSE: f64 = 4.0;
 /// Points that a walk along a branch passes, at most.
-const MOST_STEPS: usize = 64;
+const MAX_STEPS: usize = 64;
 
 /// Directions from `b` to `a`, by pair of segments. It is only looked up, never gone through, so the order of
 /// a hash map changes nothing.
@@ -219,7 +219,7 @@ pub(super) fn from_course(rods: &Rods, centers: &[DVec3], contact: &Contact) -> 
 /// Where a walk of a length (µm) from a point along its branch ends, or the branch does.
 fn walk(rods: &Rods, centers: &[DVec3], from: u32, length: f64, up: bool) -> DVec3 {
     let (mut here, mut left) = (from, length);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let next = if up {
             rods.parent(here)
         } else {

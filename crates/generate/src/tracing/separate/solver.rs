@@ -12,9 +12,9 @@ use super::spread::{GAP, Spread};
 use crate::stop::Stop;
 
 /// Searches for contacts, at most.
-const MOST_SEARCHES: usize = 30;
+const MAX_SEARCHES: usize = 30;
 /// The same in a crowd, of which each search sees a part only.
-const MOST_IN_CROWD: usize = 4;
+const MAX_IN_CROWD: usize = 4;
 /// Sweeps between two searches.
 const SWEEPS: usize = 12;
 /// What may come into contact between two searches.
@@ -33,7 +33,7 @@ const STEP: (f64, f64) = (0.5, 0.1);
 /// The same at a soma: radii of the branch, and of the soma.
 const SOMA_STEP: (f64, f64) = (0.5, 0.02);
 /// After so many searches without a better state there is no hope for one.
-const MOST_WAITING: usize = 10;
+const MAX_WAITING: usize = 10;
 
 /// Moves the points of the rods. Returns whether each search saw all contacts.
 pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
@@ -47,13 +47,13 @@ pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
     let mut sides = Sides::new();
     let mut best = Best::default();
     let mut complete = true;
-    for round in 0..=MOST_SEARCHES {
+    for round in 0..=MAX_SEARCHES {
         let found = search(rods, &solver.elastic.centers, MARGIN, Some(&moving));
         complete &= found.complete;
         let most = if complete {
-            MOST_SEARCHES
+            MAX_SEARCHES
         } else {
-            MOST_IN_CROWD
+            MAX_IN_CROWD
         };
         let improves = best.improves(rods, &found, &solver.elastic.centers);
         if !improves || round >= most || stop.asked() {
@@ -99,7 +99,7 @@ impl Best {
                 waiting: 0,
             };
         }
-        self.depth > 0.0 && self.waiting < MOST_WAITING
+        self.depth > 0.0 && self.waiting < MAX_WAITING
     }
 }
 

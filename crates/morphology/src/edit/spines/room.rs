@@ -70,12 +70,12 @@ impl Room {
 }
 
 /// Most cells along a side that a sphere is put into: what is larger is no neurite.
-const MOST_CELLS: i32 = 64;
+const MAX_CELLS: i32 = 64;
 
 fn reached(center: DVec3, radius: f64) -> [IVec3; 2] {
     let cell = |at: DVec3| (at / CELL).floor().as_ivec3();
     let (low, high) = (cell(center - radius), cell(center + radius));
-    [low, high.min(low.saturating_add(IVec3::splat(MOST_CELLS)))]
+    [low, high.min(low.saturating_add(IVec3::splat(MAX_CELLS)))]
 }
 
 fn cells(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {

@@ -23,7 +23,7 @@ use super::{ProgressiveRenderer, Steps, ViewParams};
 /// Most pixels of a band.
 const BAND_PIXELS: u32 = 1 << 18;
 /// Most pixels of a picture that is made static: a list of weights must fit a binding.
-const MOST_PIXELS: u64 = 1 << 24;
+const MAX_PIXELS: u64 = 1 << 24;
 
 /// The static picture, or what is there of it.
 #[derive(Default)]
@@ -99,7 +99,7 @@ impl ProgressiveRenderer {
         let [width, height] = params.size.map(u64::from);
         // Selections for a frozen camera do not know what a band shows.
         let possible = params.look.wire <= 0.0 && params.frozen.is_none();
-        if !possible || width * height > MOST_PIXELS {
+        if !possible || width * height > MAX_PIXELS {
             return Ok(false);
         }
         let samples = samples_in_sub_pixel(gpu, 4);

@@ -3,12 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::scene::Scene;
-use crate::scene::templates::{CLUSTER, MOST_PATCHES};
+use crate::scene::templates::{CLUSTER, MAX_PATCHES};
 use crate::sources::adaptive::cull::shows;
 use crate::sources::adaptive::settings::{BatchUniforms, CullView, FrameUniforms, Placed, SECTION};
 
 /// Most slots of a batch.
-pub(crate) const MOST_SLOTS: usize = MOST_PATCHES;
+pub(crate) const MAX_SLOTS: usize = MAX_PATCHES;
 
 /// Arguments of an indexed indirect draw. Twin of the struct of the same name in scan.wgsl.
 #[repr(C)]
@@ -87,7 +87,7 @@ pub(crate) fn cut(placed: &mut [(usize, Placed)]) -> (Vec<Batch>, u32) {
     let mut batches: Vec<Batch> = Vec::new();
     for (i, (page, part)) in placed.iter_mut().enumerate() {
         let slots = (part.patches as usize).next_multiple_of(CLUSTER);
-        let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MOST_SLOTS;
+        let fits = |b: &Batch| b.page == *page && b.uniforms.slots as usize + slots <= MAX_SLOTS;
         if !batches.last().is_some_and(fits) {
             batches.push(Batch {
                 page: *page,

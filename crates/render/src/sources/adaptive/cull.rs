@@ -11,7 +11,7 @@ use neurotess_refine::{
 };
 
 use crate::scene::Placement;
-use crate::scene::templates::MOST_PATCHES;
+use crate::scene::templates::MAX_PATCHES;
 use crate::sources::adaptive::settings::{
     AdaptiveSettings, CullView, FlatIndices, FrameUniforms, Placed,
 };
@@ -33,7 +33,7 @@ pub fn decide(
         point_levels: values,
         edges: None,
     };
-    let parts = pack(mesh, &[], values, MOST_PATCHES);
+    let parts = pack(mesh, &[], values, MAX_PATCHES);
     let mesh = dequantized(mesh, &parts);
     let refinement = Refinement::new(&mesh, lod, &settings.options());
     let in_view = |sphere: (Vec3, f32)| shows(&frame, &placed, sphere.0, sphere.1);

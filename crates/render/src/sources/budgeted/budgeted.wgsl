@@ -292,9 +292,9 @@ fn worth_of(bin: u32) -> f32 {
     return exp2(f32(bin) / BINS_OF_OCTAVE + LOWEST_OCTAVE);
 }
 
-// A random factor for each instance, the same in every frame, from 1 / MOST_CHANCE to MOST_CHANCE:
+// A random factor for each instance, the same in every frame, from 1 / MAX_CHANCE to MAX_CHANCE:
 // it keeps equal chunks of different instances from appearing and vanishing all at once.
-const MOST_CHANCE: f32 = 1.1892071;
+const MAX_CHANCE: f32 = 1.1892071;
 
 fn chance_factor(instance: u32) -> f32 {
     return exp2(0.5 * chance(instance) - 0.25);

@@ -6,8 +6,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role};
 
 use super::layout::{
-    CHUNK_FREE_END, CHUNK_FREE_START, CHUNK_TWIG, Chunk, LEVELS, LONGEST_TWIG, MOST_SEGMENTS,
-    MOST_SWAY, NO_LOD,
+    CHUNK_FREE_END, CHUNK_FREE_START, CHUNK_TWIG, Chunk, LEVELS, LONGEST_TWIG, MAX_SEGMENTS,
+    MAX_SWAY, NO_LOD,
 };
 use super::nested::simplify;
 use super::paths::{PathPoint, TubePath, tube_paths};
@@ -35,7 +35,7 @@ impl Proxy {
         for path in tube_paths(mesh) {
             let directions = directions(&path.points);
             let segments = path.points.len() - 1;
-            let count = segments.div_ceil(MOST_SEGMENTS);
+            let count = segments.div_ceil(MAX_SEGMENTS);
             let cut = |index: usize| index * segments / count;
             for index in 0..count {
                 let (from, to) = (cut(index), cut(index + 1));
@@ -215,7 +215,7 @@ fn sway(tube: &[(Vec3, f32)], directions: &[Vec3]) -> f32 {
         let way = tube[i + 1].0 - tube[i].0;
         let along = way.normalize_or_zero();
         let across = |d: Vec3| (d - along * d.dot(along)).length() * way.length() * (4.0 / 27.0);
-        let most = MOST_SWAY * tube[i].1.min(tube[i + 1].1);
+        let most = MAX_SWAY * tube[i].1.min(tube[i + 1].1);
         across(directions[i]).min(most) + across(directions[i + 1]).min(most)
     };
     (0..tube.len() - 1).map(of).fold(0.0, f32::max)

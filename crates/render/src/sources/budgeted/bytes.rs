@@ -3,7 +3,7 @@
 use bytemuck::Zeroable;
 use neurotess_mesh::{ByteReader, ByteWriter, BytesError};
 
-use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, LEVELS, MOST_SEGMENTS, NO_LOD};
+use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, LEVELS, MAX_SEGMENTS, NO_LOD};
 use super::proxy::Proxy;
 
 impl Proxy {
@@ -103,7 +103,7 @@ fn check_tube(chunk: &Chunk, own: &[u32]) -> Result<usize, BytesError> {
     let counts: &[u8] = bytemuck::bytes_of(&chunk.counts);
     let errors: &[u8] = bytemuck::bytes_of(&chunk.errors);
     let segments = usize::from(counts[0]);
-    if !(1..=MOST_SEGMENTS).contains(&segments) {
+    if !(1..=MAX_SEGMENTS).contains(&segments) {
         return Err(BytesError::Invalid("a chunk of too many segments"));
     }
     let lods = (1..LEVELS).filter(|&k| errors[k] != NO_LOD);

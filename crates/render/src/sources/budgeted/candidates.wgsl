@@ -13,7 +13,7 @@ fn chunks_above_floor(shape: Shape, nearest: f32, instance: u32) -> u32 {
         return most;
     }
     // A little less, since two compilations of an expression may round differently.
-    let carried = 0.99 * worth_of(floor) * nearest * sqrt(nearest) / (2.0 * MOST_CHANCE);
+    let carried = 0.99 * worth_of(floor) * nearest * sqrt(nearest) / (2.0 * MAX_CHANCE);
     var low = shape.somata;
     var high = max(most, low);
     while (low < high) {

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use neurotess_refine::wgsl::Constants;
 
 /// Most segments of a chunk.
-pub(crate) const MOST_SEGMENTS: usize = 64;
+pub(crate) const MAX_SEGMENTS: usize = 64;
 /// Polylines that a chunk is stored as: one of all its points, and ever coarser ones.
 pub(crate) const LEVELS: usize = 7;
 /// Number of chunks that one workgroup handles, a lane for each.
@@ -31,7 +31,7 @@ pub(crate) const NO_LOD: u8 = 255;
 pub(crate) const CELL: f64 = 1024.0;
 /// Equal to [`neurotess_refine`]'s constant of the same name: a path sways by no more than this
 /// share of the radius.
-pub(crate) const MOST_SWAY: f32 = 0.12;
+pub(crate) const MAX_SWAY: f32 = 0.12;
 
 /// Flags of a chunk: it is a soma; nothing closes it at its start; nothing closes it at its end.
 pub(crate) const CHUNK_SOMA: u32 = 1;

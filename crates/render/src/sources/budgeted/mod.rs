@@ -69,7 +69,7 @@ pub use streaming::StreamedTemplates;
 /// Triangles of a frame by default: so many a laptop draws smoothly.
 pub const DEFAULT_BUDGET: u32 = 100_000;
 /// Most triangles of a frame.
-pub const MOST_BUDGET: u32 = 1 << 23;
+pub const MAX_BUDGET: u32 = 1 << 23;
 /// Greatest distance (pixels) of what is drawn from the true surface.
 const ERROR: f32 = 0.5;
 
@@ -124,9 +124,9 @@ impl Exploration {
         })
     }
 
-    /// Most triangles of a frame, at most [`MOST_BUDGET`], from the next frame on.
+    /// Most triangles of a frame, at most [`MAX_BUDGET`], from the next frame on.
     pub fn set_budget(&mut self, triangles: u32) {
-        let triangles = triangles.min(MOST_BUDGET);
+        let triangles = triangles.min(MAX_BUDGET);
         if self.budget != triangles {
             self.budget = triangles;
             self.changed(false);

@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 
-use super::layout::{LEVELS, MOST_SEGMENTS};
+use super::layout::{LEVELS, MAX_SEGMENTS};
 
 /// A polyline that leaves out points.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,11 +19,11 @@ pub(crate) struct Simplified {
     pub(crate) error: f32,
 }
 
-/// Coarser polylines of a chunk of 2 to [`MOST_SEGMENTS`] + 1 points, with half, a fourth, … of its
+/// Coarser polylines of a chunk of 2 to [`MAX_SEGMENTS`] + 1 points, with half, a fourth, … of its
 /// segments; nothing where that is no fewer than the polyline before.
 pub(crate) fn simplify(points: &[(Vec3, f32)]) -> [Option<Simplified>; LEVELS - 1] {
     let last = points.len() - 1;
-    assert!((1..=MOST_SEGMENTS).contains(&last), "{last} segments");
+    assert!((1..=MAX_SEGMENTS).contains(&last), "{last} segments");
     let segments: [usize; LEVELS - 1] = std::array::from_fn(|k| (last >> (k + 1)).max(1));
     let mut lods: [Option<Simplified>; LEVELS - 1] = Default::default();
     let mut kept = vec![0, last];

@@ -176,7 +176,7 @@ fn limit(@builtin(local_invocation_index) lane: u32) {
 }
 
 // What the bits of a width hold.
-const MOST_DOT_WIDTH: f32 = 1000.0;
+const MAX_DOT_WIDTH: f32 = 1000.0;
 
 // How a chunk is drawn: the last of its steps that is within the budget.
 struct Drawn {
@@ -203,7 +203,7 @@ fn drawn(offers: Offers) -> Drawn {
         it.lod |= u32(width * f32(FULL_WIDTH)) << LOD_WIDTH_SHIFT;
     } else if (lod_what(it.lod) == WHAT_DOT) {
         let least = select(0.0, worth_of(threshold), threshold > 1u);
-        let width = min(dot_width(offers.width, least), MOST_DOT_WIDTH);
+        let width = min(dot_width(offers.width, least), MAX_DOT_WIDTH);
         it.lod |= u32(width * f32(FULL_WIDTH)) << LOD_WIDTH_SHIFT;
     }
     return it;

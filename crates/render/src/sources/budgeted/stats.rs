@@ -8,7 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 
 /// Most chunks of a scene that are all asked for statistics.
-const MOST_ASKED: u64 = 1 << 23;
+const MAX_ASKED: u64 = 1 << 23;
 
 /// Sums of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Exploration {
     /// # Errors
     /// The device reports an error.
     pub fn stats(&self, gpu: &Gpu) -> Result<ExplorationStats, DeviceError> {
-        let all = self.size().chunks <= MOST_ASKED;
+        let all = self.size().chunks <= MAX_ASKED;
         if all {
             self.work.set_floor(gpu, 0);
         }

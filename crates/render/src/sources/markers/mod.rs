@@ -40,7 +40,7 @@ const NO_INSTANCE: u32 = u32::MAX - 1;
 const NO_OUTWARDS: u32 = 0x8000_8000;
 /// Most markers of a chunk for each sub-pixel that its bounding sphere covers: further ones could hardly
 /// show.
-const MOST_PER_SUB_PIXEL: f32 = 4.0;
+const MAX_PER_SUB_PIXEL: f32 = 4.0;
 
 /// Where a marker is, and its color.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -402,7 +402,7 @@ fn fitting(chunk: &Chunk, sub_pixel: f64) -> u32 {
     let covered = std::f32::consts::PI * radius * radius;
     chunk
         .count
-        .min((MOST_PER_SUB_PIXEL * covered).ceil() as u32)
+        .min((MAX_PER_SUB_PIXEL * covered).ceil() as u32)
 }
 
 /// Defines `surface_vertex`.

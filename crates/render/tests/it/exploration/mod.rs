@@ -17,7 +17,7 @@ use neurotess_render::color::ColorTable;
 use neurotess_render::testing::{LodRequest, lod_requests};
 use neurotess_render::{
     Adaptive, AdaptiveSettings, Camera, Exploration, ExplorationError, Frame, Gpu, Image, Instance,
-    MOST_BUDGET, Occlusion, PictureOptions, Placement, Projection, Proxy, Scene, TemplateId,
+    MAX_BUDGET, Occlusion, PictureOptions, Placement, Projection, Proxy, Scene, TemplateId,
     VertexSource, Viewpoint, render_still,
 };
 use neurotess_testing::note;
@@ -70,7 +70,7 @@ fn the_budget_is_never_exceeded_and_used_when_it_is_needed() {
     for (count, edge) in [(1, 1.0), (7, 100.0), (300, 800.0)] {
         let instances = scattered(&mut random, count, proxies.len(), edge);
         let mut source = explored(&gpu, &proxies, instances);
-        for budget in [0, 1, 2, 3, 10, 100, 1000, 12_345, 100_000, MOST_BUDGET] {
+        for budget in [0, 1, 2, 3, 10, 100, 1000, 12_345, 100_000, MAX_BUDGET] {
             source.set_budget(budget);
             for _ in 0..4 {
                 let camera = any_camera(&mut random, edge + 60.0);
@@ -99,7 +99,7 @@ fn what_is_drawn_is_what_is_worth_most() {
     let instances = scattered(&mut random, 40, proxies.len(), 300.0);
     let mut source = explored(&gpu, &proxies, instances.clone());
     let (mut compared, mut off) = (0, 0);
-    for budget in [500, 5000, 60_000, MOST_BUDGET] {
+    for budget in [500, 5000, 60_000, MAX_BUDGET] {
         source.set_budget(budget);
         for projection in [Projection::Perspective, Projection::Orthographic].repeat(3) {
             let camera = any_camera(&mut random, 300.0).with_projection(projection);
@@ -131,7 +131,7 @@ fn what_is_drawn_is_what_is_worth_most() {
             }
             assert_eq!(shown.next(), None, "drawn in order, and nothing else");
             assert!(most < least + 1.01, "{most} was left out, {least} drawn");
-            if budget == MOST_BUDGET {
+            if budget == MAX_BUDGET {
                 assert_eq!(most, f64::MIN, "nothing is left out");
             }
         }
@@ -153,7 +153,7 @@ fn the_frame_before_changes_nothing_but_the_cost() {
         .sum();
     let mut source = explored(&gpu, &proxies, instances);
     let mut measured = 0;
-    for budget in [200, 3000, 30_000, 200, MOST_BUDGET, 3000] {
+    for budget in [200, 3000, 30_000, 200, MAX_BUDGET, 3000] {
         source.set_budget(budget);
         for _ in 0..5 {
             // Far jumps: the least worth of the frame before is too high or too low a guess.
@@ -346,7 +346,7 @@ fn what_passes_beside_the_eye_takes_no_budget() {
     let instances = scattered(&mut Random(6), 300, 1, 250.0);
     let (_, mut source) = both(&gpu, &mesh, &instances);
     let camera = Camera::new(DVec3::Z * 20.0, DVec3::ZERO, DVec3::Y, 0.9).expect("a camera");
-    source.set_budget(MOST_BUDGET);
+    source.set_budget(MAX_BUDGET);
     let all: f64 = ink(&picture(&gpu, &mut source, &camera, &table))
         .iter()
         .sum();

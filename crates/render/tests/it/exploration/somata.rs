@@ -50,7 +50,7 @@ fn a_crowd_of_somata_looks_like_one_also_within_a_budget() {
             }
         }
         let mut source = explored(&gpu, &proxies, instances);
-        source.set_budget(MOST_BUDGET);
+        source.set_budget(MAX_BUDGET);
         let all = halves(&picture(&gpu, &mut source, &camera, &table));
         for share in [2, 4, 8] {
             source.set_budget(2 * 4500 / share);

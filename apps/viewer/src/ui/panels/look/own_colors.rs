@@ -8,7 +8,7 @@ use crate::scene::stage::Stage;
 use crate::ui::panels::widgets::tip::Tip;
 
 /// Greatest height of the list; longer ones are scrolled.
-const MOST_HEIGHT: f32 = 190.0;
+const MAX_HEIGHT: f32 = 190.0;
 
 pub(crate) fn show(look: &mut Look, stage: &Stage, ui: &mut Ui) {
     let things = stage.colored_things();
@@ -19,7 +19,7 @@ pub(crate) fn show(look: &mut Look, stage: &Stage, ui: &mut Ui) {
     let height = ui.spacing().interact_size.y;
     ScrollArea::vertical()
         .id_salt("own colors")
-        .max_height(MOST_HEIGHT)
+        .max_height(MAX_HEIGHT)
         .auto_shrink([false, true])
         .show_rows(ui, height, things.len(), |ui, rows| {
             for (index, thing) in rows.clone().zip(&things[rows]) {

@@ -18,7 +18,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::buffers::{Buffers, Counts, Room, shape_of};
-use super::layout::{MOST_SEGMENTS, Shape};
+use super::layout::{MAX_SEGMENTS, Shape};
 use super::proxy::Proxy;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
@@ -404,4 +404,4 @@ impl Residence {
     }
 }
 
-const _: () = assert!(DETAILS[DETAILS.len() - 1].segments == MOST_SEGMENTS);
+const _: () = assert!(DETAILS[DETAILS.len() - 1].segments == MAX_SEGMENTS);

@@ -7,7 +7,7 @@
 
 use crate::sources::budgeted::buffers::Counts;
 use crate::sources::budgeted::layout::{
-    CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, LEVELS, MOST_SEGMENTS, NO_LOD,
+    CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, Chunk, LEVELS, MAX_SEGMENTS, NO_LOD,
 };
 use crate::sources::budgeted::proxy::Proxy;
 use crate::sources::budgeted::quantized::{bytes_of, error_of, packed_bytes, u32s_of};
@@ -28,7 +28,7 @@ const HALF_PIXEL: f32 = 0.5;
 
 impl Detail {
     /// All that there is.
-    pub(super) const FULL: Self = Self::of_all(MOST_SEGMENTS);
+    pub(super) const FULL: Self = Self::of_all(MAX_SEGMENTS);
 
     /// All chunks, with at most so many segments each.
     pub(super) const fn of_all(segments: usize) -> Self {
@@ -45,7 +45,7 @@ impl Detail {
 
     /// The polyline of a chunk that becomes its finest one; none of a soma's mesh.
     fn finest(self, chunk: &Chunk) -> Option<usize> {
-        let full = self.segments >= MOST_SEGMENTS;
+        let full = self.segments >= MAX_SEGMENTS;
         match chunk.flags & CHUNK_SOMA {
             0 if full => Some(0),
             0 => {
