@@ -108,7 +108,7 @@ fn write_section(section: &Section, to: &mut ByteWriter) {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};
-    use neurotess_generate::{Crossings, Sides, Smooth, SomaMethod, SphereKind};
+    use neurotess_generate::{Crossings, Equal, Polygons, Sides, Smooth, SomaMethod, SphereKind};
     use neurotess_morphology::NeuriteKind;
 
     use super::*;
@@ -163,7 +163,12 @@ mod tests {
             |o| o.poisson = 0.31,
             |o| o.soma_scale = 1.1,
             |o| o.radius_factor = 2.0,
-            |o| o.equal_area = Some(Sides::Level(2)),
+            |o| {
+                o.polygons = Some(Polygons {
+                    sides: Sides::Level(2),
+                    equal: Equal::Area,
+                })
+            },
             |o| o.sphere = SphereKind::Octahedron,
             |o| o.sphere_level = Some(4),
             |o| {

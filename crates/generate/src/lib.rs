@@ -15,7 +15,7 @@ mod warning;
 
 pub use error::GenerateError;
 pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
-pub use sides::Sides;
+pub use sides::{Equal, Polygons, Sides};
 pub use tracing::separate::{SeparatedPlace, Separation};
 pub use tracing::smooth::Smoothing;
 
@@ -128,7 +128,7 @@ pub fn generate_stoppable(
     let mut soma_spheres = soma::soma_spheres(morphology, &skeleton, options, &mut warnings);
     mend::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
-    if options.radius_factor != 1.0 || options.equal_area.is_some() {
+    if options.radius_factor != 1.0 || options.polygons.is_some() {
         // After smoothing, which is to take away the noise of the radii that were traced.
         mend::change_radii(&mut skeleton, |traced| options.radius(traced));
         coordinates::check(morphology, &skeleton, &mut Warnings::default())?;
@@ -176,8 +176,8 @@ pub fn generate_stoppable(
     let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
     stop.check()?;
     mesh.origin = morphology.origin;
-    if let Some(sides) = options.equal_area {
-        tell_traced_radii(&mut mesh, sides);
+    if let Some(polygons) = options.polygons {
+        tell_traced_radii(&mut mesh, polygons);
     }
     let lost = |v: &&Vertex| !(v.position.is_finite() && v.normal.is_finite());
     if let Some(vertex) = mesh.vertices.iter().find(lost) {
@@ -197,10 +197,10 @@ pub fn generate_stoppable(
 }
 
 /// Tells the radii of neurites as they were traced; their rings are larger.
-fn tell_traced_radii(mesh: &mut CoarseMesh, sides: Sides) {
+fn tell_traced_radii(mesh: &mut CoarseMesh, polygons: Polygons) {
     let tracing = mesh.tracing.iter_mut();
     for point in tracing.filter(|point| point.role != Role::Soma) {
-        point.radius = sides.traced(f64::from(point.radius)) as f32;
+        point.radius = polygons.traced(f64::from(point.radius)) as f32;
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use neurotess_morphology::NeuriteKind;
 
-use crate::Sides;
+use crate::Polygons;
 
 /// How the soma is rebuilt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,9 +75,9 @@ pub struct GenerateOptions {
     ///
     /// [`TracingPoint::radius`]: neurotess_mesh::TracingPoint::radius
     pub radius_factor: f64,
-    /// Radii of neurites that make up for polygons of so many sides: refined, neurites hold as much as was traced.
-    /// `None`: the vertices lie on the traced radius, and polygons within it.
-    pub equal_area: Option<Sides>,
+    /// Radii of neurites that make up for the sides of polygons: refined, neurites hold as much as was traced, or have
+    /// as much membrane. `None`: the vertices lie on the traced radius, and polygons within it.
+    pub polygons: Option<Polygons>,
     /// Type of the sphere.
     pub sphere: SphereKind,
     /// Resolution of the sphere: octahedron 3 to 5, cube 4 to 32; `None`: what fits the neurites.
@@ -105,7 +105,8 @@ impl GenerateOptions {
     /// Radius (µm) of the rings where one was traced.
     pub(crate) fn radius(&self, traced: f64) -> f64 {
         let wanted = self.radius_factor * traced;
-        self.equal_area.map_or(wanted, |sides| sides.radius(wanted))
+        self.polygons
+            .map_or(wanted, |polygons| polygons.radius(wanted))
     }
 }
 
@@ -116,7 +117,7 @@ impl Default for GenerateOptions {
             poisson: 0.3,
             soma_scale: 1.0,
             radius_factor: 1.0,
-            equal_area: None,
+            polygons: None,
             sphere: SphereKind::Cube,
             sphere_level: None,
             rings: BTreeMap::new(),

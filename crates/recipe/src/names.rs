@@ -138,7 +138,7 @@ impl MeshOption {
             Self::Soma => "generate.soma",
             Self::Poisson => "generate.poisson",
             Self::SomaScale => "generate.soma_scale",
-            Self::Radii => "generate.equal_area",
+            Self::Radii => "generate.polygons",
             Self::RadiusFactor => "generate.radius_factor",
             Self::Radius => "generate.unknown_radius",
             Self::MinRadius => "generate.least_radius",

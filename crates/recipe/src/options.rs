@@ -1,6 +1,6 @@
 //! Options of a cell's mesh.
 
-use neurotess_generate::{GenerateOptions, Sides, Smooth, SomaMethod};
+use neurotess_generate::{Equal, GenerateOptions, Polygons, Sides, Smooth, SomaMethod};
 use neurotess_morphology::NeuriteKind;
 use neurotess_refine::{EdgeRule, LodCriterion, LodView, RefineOptions};
 
@@ -70,6 +70,8 @@ pub enum Radii {
     Traced,
     /// As much larger as gives the polygon the area of the circle, so that neurites keep their volume.
     EqualArea,
+    /// As much larger as gives the polygon the perimeter of the circle, so that neurites keep the area of their membrane.
+    EqualPerimeter,
 }
 
 /// All that a cell's mesh depends on. The command line, Python and the window have the same.
@@ -114,7 +116,7 @@ impl MeshOptions {
         };
         Self {
             generate: GenerateOptions {
-                equal_area: Self::sides(Levels::Edges(rule)),
+                polygons: Self::polygons(Equal::Area, Levels::Edges(rule)),
                 ..GenerateOptions::default()
             },
             levels: Levels::Edges(rule),
@@ -143,8 +145,8 @@ impl MeshOptions {
     #[must_use]
     pub fn with_levels(mut self, levels: Levels) -> Self {
         self.levels = levels;
-        if self.generate.equal_area.is_some() {
-            self.generate.equal_area = Self::sides(levels);
+        if let Some(polygons) = self.generate.polygons {
+            self.generate.polygons = Self::polygons(polygons.equal, levels);
         }
         self
     }
@@ -184,9 +186,15 @@ impl MeshOptions {
         self
     }
 
+    /// Radii that make up for the sides of the polygons around neurites at these levels; none where these sides differ from
+    /// place to place.
+    pub fn polygons(equal: Equal, levels: Levels) -> Option<Polygons> {
+        Self::sides(levels).map(|sides| Polygons { sides, equal })
+    }
+
     /// Sides of the polygons around neurites, for radii that make up for them; none where they differ from place to
     /// place in a way that is not known beforehand.
-    pub fn sides(levels: Levels) -> Option<Sides> {
+    fn sides(levels: Levels) -> Option<Sides> {
         match levels {
             Levels::Coarse => Some(Sides::Level(1)),
             Levels::Criterion(LodCriterion::Homogeneous(level)) => Some(Sides::Level(level)),

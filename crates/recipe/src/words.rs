@@ -49,8 +49,11 @@ impl Word for Crossings {
 }
 
 impl Word for Radii {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("traced", Self::Traced), ("equal-area", Self::EqualArea)];
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("traced", Self::Traced),
+        ("equal-area", Self::EqualArea),
+        ("equal-perimeter", Self::EqualPerimeter),
+    ];
 }
 
 impl Word for SomaMethod {

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         soma: Literal["fem", "sphere", "profile", "none"] | None
         poisson: float | None
         soma_scale: float | None
-        radii: Literal["traced", "equal-area"] | None
+        radii: Literal["traced", "equal-area", "equal-perimeter"] | None
         radius_factor: float | None
         radius: float | None
         min_radius: float | None
@@ -251,7 +251,7 @@ def mesh(
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     poisson: float | None = None,
     soma_scale: float | None = None,
-    radii: Literal["traced", "equal-area"] | None = None,
+    radii: Literal["traced", "equal-area", "equal-perimeter"] | None = None,
     radius_factor: float | None = None,
     radius: float | None = None,
     min_radius: float | None = None,

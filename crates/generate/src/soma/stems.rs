@@ -32,8 +32,7 @@ pub(crate) fn gather(
     }
     let mut bundles = Vec::new();
     for (soma, stems) in stems {
-        if let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| stems.len() > MAX_STEMS)
-        {
+        if let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| stems.len() > MAX_STEMS) {
             let near = bundle(skeleton, &soma_sphere, stems).into_iter();
             bundles.extend(near.filter(|b| b.len() > 1).map(|b| (soma, soma_sphere, b)));
         }

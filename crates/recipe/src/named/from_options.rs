@@ -1,5 +1,6 @@
 //! From options to names.
 
+use neurotess_generate::Equal;
 use neurotess_refine::{EdgeRule, LodCriterion};
 
 use super::NamedOptions;
@@ -25,10 +26,19 @@ impl NamedOptions {
         };
         let usual = &default.generate;
         let other = |value: f64, usual: f64| (value != usual).then_some(value);
-        let radii = match generate.equal_area {
+        let radii = match generate.polygons {
             None => Radii::Traced,
-            sides if sides == MeshOptions::sides(*levels) => Radii::EqualArea,
-            _ => return Err(OptionsError::Unnamed(MeshOption::Radii)),
+            Some(polygons) if MeshOptions::polygons(polygons.equal, *levels) == Some(polygons) => {
+                match polygons.equal {
+                    Equal::Area => Radii::EqualArea,
+                    Equal::Perimeter => Radii::EqualPerimeter,
+                }
+            }
+            Some(_) => return Err(OptionsError::Unnamed(MeshOption::Radii)),
+        };
+        let usual_radii = match simulation {
+            true => Radii::EqualArea,
+            false => Radii::Traced,
         };
         let named = Self {
             path: (refine.path != default.refine.path).then_some(refine.path),
@@ -38,7 +48,7 @@ impl NamedOptions {
             soma: (generate.soma != usual.soma).then_some(generate.soma),
             poisson: other(generate.poisson, usual.poisson),
             soma_scale: other(generate.soma_scale, usual.soma_scale),
-            radii: ((radii == Radii::EqualArea) != simulation).then_some(radii),
+            radii: (radii != usual_radii).then_some(radii),
             radius_factor: other(generate.radius_factor, usual.radius_factor),
             radius: generate.unknown_radius,
             min_radius: other(generate.least_radius, usual.least_radius),

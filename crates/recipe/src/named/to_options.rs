@@ -1,6 +1,6 @@
 //! From names to options: defaults, and what excludes what.
 
-use neurotess_generate::{GenerateOptions, Sides};
+use neurotess_generate::{Equal, GenerateOptions, Polygons};
 use neurotess_refine::{EdgeRule, LodCriterion, RefineOptions};
 
 use super::NamedOptions;
@@ -17,7 +17,7 @@ impl NamedOptions {
         let levels = self.levels();
         let usual = MeshOptions::default();
         let generate = GenerateOptions {
-            equal_area: self.equal_area(levels)?,
+            polygons: self.polygons(levels)?,
             ..self.generate()?
         };
         let options = MeshOptions {
@@ -105,19 +105,19 @@ impl NamedOptions {
         }
     }
 
-    /// Sides of the polygons around neurites, whose area is to be that of the traced circles.
-    fn equal_area(&self, levels: Levels) -> Result<Option<Sides>, OptionsError> {
+    /// Radii that make up for the sides of the polygons around neurites.
+    fn polygons(&self, levels: Levels) -> Result<Option<Polygons>, OptionsError> {
         let usual = match self.simulation {
             true => Radii::EqualArea,
             false => Radii::Traced,
         };
-        match self.radii.unwrap_or(usual) {
-            Radii::Traced => Ok(None),
-            Radii::EqualArea => {
-                let sides = MeshOptions::sides(levels);
-                sides.map(Some).ok_or(OptionsError::UnknownSides)
-            }
-        }
+        let equal = match self.radii.unwrap_or(usual) {
+            Radii::Traced => return Ok(None),
+            Radii::EqualArea => Equal::Area,
+            Radii::EqualPerimeter => Equal::Perimeter,
+        };
+        let polygons = MeshOptions::polygons(equal, levels);
+        polygons.map(Some).ok_or(OptionsError::UnknownSides)
     }
 
     fn generate(&self) -> Result<GenerateOptions, OptionsError> {

@@ -143,7 +143,10 @@ fn polygons_of_equal_area_keep_the_volume() {
     for (sides, rule) in rules {
         let plain = refined(&cell, &GenerateOptions::default(), rule);
         let grown = GenerateOptions {
-            equal_area: Some(sides),
+            polygons: Some(Polygons {
+                sides,
+                equal: Equal::Area,
+            }),
             ..GenerateOptions::default()
         };
         let grown = refined(&cell, &grown, rule);

@@ -235,6 +235,8 @@ pub(crate) enum RadiiArg {
     Traced,
     /// As much larger as gives the polygon the area of the circle, so that neurites keep their volume
     EqualArea,
+    /// As much larger as gives the polygon the perimeter of the circle, so that neurites keep the area of their membrane
+    EqualPerimeter,
 }
 
 /// `--caps`

@@ -59,7 +59,7 @@ impl MeshOptions {
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}");
         let generate = generate
-            .replace(", equal_area: None", "")
+            .replace(", polygons: None", "")
             .replace(", unknown_radius: None", "")
             .replace(", least_radius: 0.0", "")
             .replace(", crossings: Keep", "")
@@ -175,6 +175,7 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
     named.radii = args.radii.map(|radii| match radii {
         RadiiArg::Traced => Radii::Traced,
         RadiiArg::EqualArea => Radii::EqualArea,
+        RadiiArg::EqualPerimeter => Radii::EqualPerimeter,
     });
     named.radius_factor = Some(args.radius_factor);
     named.radius = args.radius.radius;
@@ -227,7 +228,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use clap::Parser;
-    use neurotess::generate::{Sides, Smooth};
+    use neurotess::generate::{Equal, Polygons, Sides, Smooth};
     use neurotess::morphology::NeuriteKind;
 
     use super::*;
@@ -264,9 +265,15 @@ mod tests {
         let text = options.fingerprint();
         assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
         assert!(text.starts_with("MaxError(0.05) "), "{text}");
-        options.recipe.generate.equal_area = Some(Sides::Level(2));
+        options.recipe.generate.polygons = Some(Polygons {
+            sides: Sides::Level(2),
+            equal: Equal::Area,
+        });
         let text = options.fingerprint();
-        assert!(text.contains(", equal_area: Some(Level(2)), "), "{text}");
+        assert!(
+            text.contains(", polygons: Some(Polygons { sides: Level(2), equal: Area }), "),
+            "{text}"
+        );
         options.recipe.generate.smooth = Smooth::Length(2.0);
         let text = options.fingerprint();
         assert!(text.contains(", smooth: Length(2.0) } "), "{text}");

@@ -239,7 +239,7 @@ impl Job<'_> {
     fn recipe(&self) -> recipe::MeshOptions {
         let mut options = self.options.recipe.clone();
         options.generate = GenerateOptions {
-            equal_area: options.generate.equal_area,
+            polygons: options.generate.polygons,
             ..self.plan.generate.clone()
         };
         if !self.options.as_shown {

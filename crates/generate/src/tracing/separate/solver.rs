@@ -50,11 +50,7 @@ pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
     for round in 0..=MAX_SEARCHES {
         let found = search(rods, &solver.elastic.centers, MARGIN, Some(&moving));
         complete &= found.complete;
-        let most = if complete {
-            MAX_SEARCHES
-        } else {
-            MAX_IN_CROWD
-        };
+        let most = if complete { MAX_SEARCHES } else { MAX_IN_CROWD };
         let improves = best.improves(rods, &found, &solver.elastic.centers);
         if !improves || round >= most || stop.asked() {
             break;

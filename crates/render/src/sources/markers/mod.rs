@@ -400,9 +400,7 @@ impl Companion for Markers {
 fn fitting(chunk: &Chunk, sub_pixel: f64) -> u32 {
     let radius = (chunk.reach / sub_pixel) as f32 + 1.0;
     let covered = std::f32::consts::PI * radius * radius;
-    chunk
-        .count
-        .min((MAX_PER_SUB_PIXEL * covered).ceil() as u32)
+    chunk.count.min((MAX_PER_SUB_PIXEL * covered).ceil() as u32)
 }
 
 /// Defines `surface_vertex`.
