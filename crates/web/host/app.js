@@ -19,7 +19,7 @@ const PIXELS = 0.5, DRAFT_PIXELS = 2, DRAFT_LEVEL = 3;
 const HOVER = 70;
 const BACKGROUNDS = { light: /** @type {import('./colors.js').Rgb} */ ([255, 255, 255]), dark: /** @type {import('./colors.js').Rgb} */ ([21, 23, 27]) };
 /** Most pixels of a picture, half as many on phones: each takes some 120 bytes of the card. */
-const MOST_PIXELS = 4e6;
+const MAX_PIXELS = 4e6;
 /** Level of meshes that are saved while the level is automatic, as of the command. */
 const SAVED_LEVEL = 4;
 
@@ -100,7 +100,7 @@ export class App {
   }
 
   resize() {
-    const { canvas } = this, most = matchMedia('(pointer: coarse)').matches ? MOST_PIXELS / 2 : MOST_PIXELS;
+    const { canvas } = this, most = matchMedia('(pointer: coarse)').matches ? MAX_PIXELS / 2 : MAX_PIXELS;
     this.ratio = Math.min(devicePixelRatio, Math.sqrt(most / (canvas.clientWidth * canvas.clientHeight + 1)));
     const size = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(Math.round(n * this.ratio), 1));
     if (canvas.width === size[0] && canvas.height === size[1]) return false;

@@ -12,7 +12,7 @@ const CATEGORY = 1 << 15;
 /** Of points without a value. */
 const NOTHING = /** @type {Rgb} */ ([160, 160, 160]);
 /** Ends of color maps with less contrast to the background (WCAG 2.2) are left out. */
-const LEAST_CONTRAST = 1.4;
+const MIN_CONTRAST = 1.4;
 /** Types from here on take the last colors in turn. */
 const CUSTOM = 5;
 
@@ -158,7 +158,7 @@ export class Colors {
     const { colors } = this.map, behind = luminance(this.background) + 0.05;
     const seen = colors.map((/** @type {Rgb} */ color) => {
       const own = luminance(color) + 0.05;
-      return Math.max(own, behind) / Math.min(own, behind) >= LEAST_CONTRAST;
+      return Math.max(own, behind) / Math.min(own, behind) >= MIN_CONTRAST;
     });
     return [Math.max(seen.indexOf(true), 0), Math.max(seen.lastIndexOf(true), 1)];
   }

@@ -11,7 +11,7 @@ export const DEPTH = 'depth32float';
 /** Lists of blocks: see blocks.wgsl. */
 const COVERED = 0, OCCLUDED = 16;
 /** Occlusion reaches this share of the picture's height, at most so many pixels: see options.rs. */
-const REACH = 0.08, MOST = 0.09, MOST_PIXELS = 360;
+const REACH = 0.08, MOST = 0.09, MAX_PIXELS = 360;
 
 /** Textures and buffers of one size. */
 export class Targets {
@@ -120,7 +120,7 @@ export class Finisher {
     const radius = occlusion && this.occludes ? REACH * 2 * view.halfHeight : 0;
     this.device.queue.writeBuffer(this.uniform, 0, new Struct(this.shaders.layouts.Finish).set({
       tile_size: size, tile_origin: [0, 0], half_size: size.map((n) => n / 2), slope: view.slope, flat: view.flat, scale: 1,
-      radius, most: Math.ceil(Math.min(MOST * size[1], MOST_PIXELS)), tiled: 0, clear: steps === 1 ? 1 : 0, kept: size, spare: step,
+      radius, most: Math.ceil(Math.min(MOST * size[1], MAX_PIXELS)), tiled: 0, clear: steps === 1 ? 1 : 0, kept: size, spare: step,
       empty: red | (green << 8) | (blue << 16) | (255 << 24), background: [...background.map(linear), 1], inset: [0, 0],
     }).bytes);
     const [group, dispatches] = this.groupsOf(targets);

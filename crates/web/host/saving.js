@@ -4,7 +4,7 @@ import { quads } from './selection.js';
 import { ranges } from './ranges.js';
 
 /** Vertices that the card makes at once, and the most triangles of a file. */
-const TOGETHER = 1 << 18, MOST_TRIANGLES = 20e6;
+const TOGETHER = 1 << 18, MAX_TRIANGLES = 20e6;
 /** See even.wgsl. */
 const KIND_STEP = 1 << 21;
 
@@ -68,7 +68,7 @@ class Welder {
  */
 export async function surface(renderer, scene, level) {
   const { HIGHEST_LEVEL, PATCH_CAP, PATCH_SOMA } = scene.numbers;
-  if (2 * level ** 2 * scene.slots > MOST_TRIANGLES) throw new Error(`level ${level} is too fine for a file of this page: choose a lower one`);
+  if (2 * level ** 2 * scene.slots > MAX_TRIANGLES) throw new Error(`level ${level} is too fine for a file of this page: choose a lower one`);
   const room = 1 << 16, vertices = new Growing(new Float32Array(room)), sections = new Growing(new Int32Array(room));
   const triangles = new Growing(new Uint32Array(room));
   let count = 0, cell = -1, welder = new Welder(1);

@@ -3,7 +3,7 @@
 import { Struct } from './shaders.js';
 
 /** Occlusion reaches this share of the picture's height, at most so many pixels: see options.rs of `render`. */
-const REACH = 0.08, MOST = 0.09, MOST_PIXELS = 360;
+const REACH = 0.08, MOST = 0.09, MAX_PIXELS = 360;
 
 export class Shadows {
   /**
@@ -75,7 +75,7 @@ export class Shadows {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     draw();
     write(new Struct(this.shaders.layouts.Shadows).set({ size, slope: view.slope, flat: view.flat, radius: REACH * 2 * view.halfHeight,
-      most: Math.ceil(Math.min(MOST * size[1], MOST_PIXELS)), tile_origin: [0, 0] }));
+      most: Math.ceil(Math.min(MOST * size[1], MAX_PIXELS)), tile_origin: [0, 0] }));
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.none);
     const [normals, depths, occluded, blurred] = this.textures;

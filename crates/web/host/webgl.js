@@ -12,7 +12,7 @@ import { Shadows } from './shadows.js';
 /** Numbers in a row of a texture: see texture_source.rs. */
 const ROW = 1024;
 /** Vertices that are made and drawn together, and the most that are kept. */
-const TOGETHER = 1 << 18, MOST_KEPT = 1 << 23;
+const TOGETHER = 1 << 18, MAX_KEPT = 1 << 23;
 const PICKED = 7;
 const BYTES = 32;
 
@@ -122,7 +122,7 @@ export class WebGlRenderer {
     // A quarter of a circle in n chords is off by r (π / 4n)² / 2.
     const pixels = this.thickest / (view.flat + view.slope * distance);
     const level = Math.ceil(Math.PI / 4 * Math.sqrt(pixels / 2 / look.lod.pixels));
-    const affordable = Math.floor(Math.sqrt(MOST_KEPT / this.scene.slots)) - 1;
+    const affordable = Math.floor(Math.sqrt(MAX_KEPT / this.scene.slots)) - 1;
     return Math.max(Math.min(level, affordable, 16), 1);
   }
 
@@ -133,7 +133,7 @@ export class WebGlRenderer {
     for (const buffer of new Set(this.stretches.map(({ buffer }) => buffer))) gl.deleteBuffer(buffer);
     const all = scene.parts.flatMap((part) => ranges(part, level, this.shaders.numbers.HIGHEST_LEVEL, TOGETHER));
     const vertices = all.reduce((sum, { slots, columns }) => sum + slots * columns ** 2, 0);
-    this.keeps = vertices <= MOST_KEPT;
+    this.keeps = vertices <= MAX_KEPT;
     const make = (/** @type {number} */ count) => {
       const buffer = /** @type {WebGLBuffer} */ (gl.createBuffer());
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);

@@ -44,6 +44,6 @@ fn even_vertex(index: u32) -> EvenVertex {
     let sides = vec4<u32>(even.level);
     let grid = patch_grid(p.kind, CAPS_ROUND, sides);
     let v = grid_vertex(even.base, p, levels, sides, grid, place % even.columns, place / even.columns);
-    let key = color_key_of(even.base, v.nearest) & ~CATEGORY_BIT;
+    let key = color_key_of(even.base, v.shown) & ~CATEGORY_BIT;
     return EvenVertex(vec4(v.position, v.radius), vec4(v.normal, f32(1u + key + KIND_STEP * p.kind)));
 }

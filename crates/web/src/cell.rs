@@ -59,13 +59,13 @@ pub(crate) struct PartData {
 const NO_SECTION: u16 = u16::MAX;
 
 /// Most patches of a part.
-pub(crate) const MOST_PATCHES: usize = 1 << 20;
+pub(crate) const MAX_PATCHES: usize = 1 << 20;
 
 /// The packed parts of a cell whose tracing points have color keys of their own, from `first_key` on.
 pub fn packed_parts(cell: &Cell<'_>, first_key: usize) -> Vec<MeshPart> {
     let keys = first_key..first_key + cell.mesh.tracing.len();
     let keys: Vec<u32> = keys.map(|key| category(key as u32)).collect();
-    pack(cell.mesh, &keys, &[], MOST_PATCHES)
+    pack(cell.mesh, &keys, &[], MAX_PATCHES)
 }
 
 impl CellData {

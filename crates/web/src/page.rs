@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use crate::arrays::Arrays;
 use crate::base85::{base85, signs};
-use crate::cell::{CellData, MOST_PATCHES, PageCell};
+use crate::cell::{CellData, MAX_PATCHES, PageCell};
 use crate::error::WebError;
 use crate::host_script::host_script;
 use crate::markers::{MarkerData, PageMarkers};
@@ -84,7 +84,7 @@ pub struct Page {
 const BEST: u32 = 10;
 
 /// Color keys are below: they and the kind of a patch fit an f32 (shaders/even.wgsl).
-const MOST_KEYS: usize = 1 << 20;
+const MAX_KEYS: usize = 1 << 20;
 
 /// Makes a page. `schemes` color all cells in their order.
 ///
@@ -101,8 +101,8 @@ pub fn page(
     if cells.iter().all(|cell| cell.cell.mesh.patches.is_empty()) {
         return Err(WebError::Empty);
     }
-    if points > MOST_KEYS {
-        let most = MOST_KEYS;
+    if points > MAX_KEYS {
+        let most = MAX_KEYS;
         return Err(WebError::TooManyPoints { points, most });
     }
     let mut arrays = Arrays::default();
@@ -116,8 +116,8 @@ pub fn page(
         })
         .collect();
     let patches: usize = cells.iter().map(CellData::slots).sum();
-    if patches > MOST_PATCHES {
-        let most = MOST_PATCHES;
+    if patches > MAX_PATCHES {
+        let most = MAX_PATCHES;
         return Err(WebError::TooManyPatches { patches, most });
     }
     let schemes = schemes.iter();

@@ -289,7 +289,8 @@ def mesh(
       `soma_sphere`, `soma_level`
     - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
     - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
-      ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume
+      ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume;
+      ``"equal-perimeter"``: as keeps the traced area of the membrane
     - `radius_factor`: a factor on the radii of neurites, as for printing in three dimensions
     - `radius`: that of points without one (µm), else taken from their neighbors; `min_radius`: the least of neurites
     - `smooth`: smooths the noise of the tracing away by this length (µm), or ``"auto"``

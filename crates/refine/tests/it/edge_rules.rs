@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use crate::judge::assert_closed;
 use crate::trees::{Twig, grow};
 use glam::Vec3;
-use neurotess_generate::{GenerateOptions, Sides, generate};
+use neurotess_generate::{Equal, GenerateOptions, Polygons, Sides, generate};
 use neurotess_mesh::{SurfaceMesh, measure_surface};
 use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Point, Section};
 use neurotess_refine::{Caps, EdgeRule, Lod, RefineOptions, Refinement};

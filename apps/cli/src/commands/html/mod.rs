@@ -21,7 +21,7 @@ use crate::report::{Entry, Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
 
 /// Pages are larger only by `--force`: mail takes them, and browsers open them at once.
-const MOST_BYTES: usize = 2_000_000;
+const MAX_BYTES: usize = 2_000_000;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     .page(reporter)?;
     let bytes = made.html.len();
-    if bytes > MOST_BYTES && !args.force {
+    if bytes > MAX_BYTES && !args.force {
         let size = size_text(bytes);
         anyhow::bail!("the page would have {size}: leave out cells, or use --force");
     }
