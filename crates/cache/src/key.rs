@@ -167,7 +167,7 @@ mod tests {
                 o.polygons = Some(Polygons {
                     sides: Sides::Level(2),
                     equal: Equal::Area,
-                })
+                });
             },
             |o| o.sphere = SphereKind::Octahedron,
             |o| o.sphere_level = Some(4),
