@@ -51,6 +51,8 @@ const USAGE: &str = "cargo xtask COMMAND
             a folder that tests and measures on a machine with graphics hardware and nothing but a driver:
             out/gpu-bundle, to be started by its run.sh
   gpu-page  put the figures of such a run, FILE.json, into benchmarks/gpu.md
+  sweep     the same figures of surfaces with a number of the code times factors, as in
+            generate/plan/zone::MAX_RATIO 0.5 2; a copy is built, the checkout stays as it is
   quality   what meshes of real cells are worth, as a table: crossings, folds, meshes for simulations; with
             --against BEFORE.json whether sums got worse by more than 5 %; with --page benchmarks/quality.md
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
@@ -83,6 +85,7 @@ fn main() -> ExitCode {
         Some("gpu-page") => gpu::publish::run(std::env::args().skip(2)),
         Some("bench") => bench::run(),
         Some("quality") => quality::run(std::env::args().skip(2)),
+        Some("sweep") => quality::sweep::run(std::env::args().skip(2)),
         Some("architecture") => architecture(),
         Some("setup") => setup::run(lane).map(|said| println!("{said}")),
         Some("pictures") => pictures::run(std::env::args().nth(2).as_deref() == Some("--golden")),

@@ -4,6 +4,7 @@
 //! `neurotess mesh --simulation`.
 
 mod cells;
+pub(crate) mod sweep;
 mod table;
 
 use std::fs;

@@ -107,6 +107,28 @@ fn sum(figures: &Value, key: &str) -> f64 {
     cells(figures).iter().map(|cell| number(&cell[key])).sum()
 }
 
+/// Sums with other values of a number, as shares of those with the first one.
+pub(super) fn beside(measured: &[(String, Value)]) -> String {
+    let mut text = String::from("| value |");
+    for (key, _) in COMPARED {
+        let _ = write!(text, " {key} |");
+    }
+    text += " volume | seconds |\n| --- |";
+    text += &" ---: |".repeat(COMPARED.len() + 2);
+    let keys = COMPARED
+        .iter()
+        .map(|(key, _)| *key)
+        .chain(["volume", "seconds"]);
+    for (value, figures) in measured {
+        let _ = write!(text, "\n| {value} |");
+        for key in keys.clone() {
+            let (was, is) = (sum(&measured[0].1, key), sum(figures, key));
+            let _ = write!(text, " {:.3} |", is / was.max(1e-12));
+        }
+    }
+    text
+}
+
 /// Two tables beside one another.
 pub(super) struct Compared {
     pub(super) text: String,
