@@ -156,10 +156,10 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
     let normal = edge_normal(s.kind, a, b, jet.derivative, t);
-    // What is between two rings belongs to the second.
-    let is_link = s.kind == EDGE_ALONG || s.kind == EDGE_LOFT;
+    // What leads from a fork to a branch is the branch's.
+    let is_of_end = s.kind == EDGE_LOFT || (s.kind == EDGE_ALONG && a.role == ROLE_JOINT);
     var shown = s.end;
-    if (t < 0.5 && !is_link) {
+    if (t < 0.5 && !is_of_end) {
         shown = s.start;
     }
     if (s.kind == EDGE_SOMA) {
@@ -210,8 +210,9 @@ fn inner_vertex(
     let y = f32(j) / f32(grid.ny);
     let shape = patch_shape(source, p);
     let inside = interior(shape, options.path, options.caps, x, y);
-    // What is between two rings belongs to the second.
-    let is_second = y >= 0.5 || p.kind == PATCH_LATERAL || p.kind == PATCH_LOFT;
+    // What leads from a fork to a branch is the branch's.
+    let is_of_end = p.kind == PATCH_LOFT || (p.kind == PATCH_LATERAL && shape.a.role == ROLE_JOINT);
+    let is_second = y >= 0.5 || is_of_end;
     var shown = p.corners.x;
     if (x >= 0.5 && !is_second) {
         shown = p.corners.y;

@@ -237,8 +237,8 @@ struct InnerEdge<'r> {
     normals: EdgeNormals,
     level: u16,
     tracing: [&'r TracingPoint; 2],
-    /// Whether it links two rings: what is between belongs to the second.
-    is_link: bool,
+    /// Whether all of it belongs to where it ends: what leads from a fork to a branch is the branch's.
+    is_of_end: bool,
     /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
     soma: Option<&'r TracingPoint>,
 }
@@ -253,7 +253,11 @@ impl<'r> InnerEdge<'r> {
             normals: EdgeNormals::new(plan.kind, a, b),
             level: plan.level,
             tracing,
-            is_link: matches!(plan.kind, EdgeKind::Along | EdgeKind::Loft),
+            is_of_end: match plan.kind {
+                EdgeKind::Loft => true,
+                EdgeKind::Along => tracing[0].role == Role::Joint,
+                EdgeKind::Ring | EdgeKind::Soma => false,
+            },
             soma: tracing.into_iter().find(of_soma),
         }
     }
@@ -265,7 +269,7 @@ impl<'r> InnerEdge<'r> {
         let normal = self.normals.at(jet.derivative, t);
         let [ta, tb] = self.tracing;
         let radius = self.curve.radius(t);
-        let shown = if t < 0.5 && !self.is_link { ta } else { tb };
+        let shown = if t < 0.5 && !self.is_of_end { ta } else { tb };
         attributed(jet.position, normal, self.soma.unwrap_or(shown), radius)
     }
 }
@@ -277,8 +281,8 @@ struct InnerVertices<'r> {
     options: &'r RefineOptions,
     /// By corner.
     tracing: [&'r TracingPoint; 4],
-    /// Whether it links two rings.
-    is_link: bool,
+    /// As of an [edge](InnerEdge::is_of_end).
+    is_of_end: bool,
     /// That of the soma, which all vertices of its patches show.
     soma: Option<&'r TracingPoint>,
 }
@@ -295,7 +299,11 @@ impl<'r> InnerVertices<'r> {
                 .grid(refinement.mesh, &refinement.options, patch),
             options: &refinement.options,
             tracing,
-            is_link: matches!(kind, PatchKind::Lateral | PatchKind::Loft),
+            is_of_end: match kind {
+                PatchKind::Loft => true,
+                PatchKind::Lateral => tracing[0].role == Role::Joint,
+                PatchKind::Cap | PatchKind::Soma => false,
+            },
             soma: tracing.into_iter().find(of_soma),
         }
     }
@@ -316,8 +324,7 @@ impl<'r> InnerVertices<'r> {
             j as f32 / self.grid.ny as f32,
         );
         let (position, normal) = row.point(x);
-        // What is between two rings belongs to the second.
-        let is_second = y >= 0.5 || self.is_link;
+        let is_second = y >= 0.5 || self.is_of_end;
         let shown = usize::from(is_second) * 2 + usize::from((x >= 0.5) != is_second);
         let radius = row.radius(x);
         let tracing = self.soma.unwrap_or(self.tracing[shown]);

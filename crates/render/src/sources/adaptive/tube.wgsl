@@ -52,7 +52,7 @@ fn tube_vertex(point: u32, k: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32
         tube_normal(made, a.normal),
         made.axis,
         made.radius,
-        select(start.color_key, end.color_key, !on_ring && y > 0.0),
+        select(start.color_key, end.color_key, !on_ring && y >= 0.5),
         start.instance,
         wire_grid(PATCH_LATERAL, grid, i, j),
     );

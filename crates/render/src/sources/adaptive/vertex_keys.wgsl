@@ -64,6 +64,6 @@ fn keys_of_tube(point: u32, levels: vec4<u32>, grid: Grid, i: u32, j: u32) -> Su
         let level = select(levels.y, levels.w, i == 0u);
         y = f32(snap(j, grid.ny, level)) / f32(level);
     }
-    let corner = select(0u, 2u, y > 0.0);
+    let corner = select(0u, 2u, y >= 0.5);
     return SurfaceKeys(vec4(start.color_key, start.color_key, end, end), corner, start.instance);
 }

@@ -119,12 +119,12 @@ fn station(chunk: Chunk, level: u32, segment: u32, t: f32) -> Station {
     }
     let far = direction(chunk, level, segment + 1u, b.position);
     if (t == 1.0) {
-        return Station(b.position, far, b.radius, b.point, chord);
+        return Station(b.position, far, b.radius, select(a.point, b.point, t > 0.5), chord);
     }
     let near = direction(chunk, level, segment, a.position);
     let along = center_line(on_path(a, near), on_path(b, far), PATH_HERMITE, t);
     let radius = mix(a.radius, b.radius, t);
-    return Station(along.position, normalize_or(along.derivative, near), radius, b.point, chord);
+    return Station(along.position, normalize_or(along.derivative, near), radius, select(a.point, b.point, t > 0.5), chord);
 }
 
 // A point of a path, in the form that evaluate.wgsl takes.
