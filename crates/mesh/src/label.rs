@@ -46,12 +46,10 @@ impl FaceLabel {
     }
 }
 
-/// The section of a face whose corners are of these sections.
+/// The section of a face whose corners are of these sections; those of walls are negative.
 pub(crate) fn section_of<const N: usize>(corners: [i32; N]) -> i32 {
-    match corners.contains(&SOMA) {
-        true => SOMA,
-        false => corners.into_iter().fold(SOMA, i32::max),
-    }
+    let [low, high] = [i32::min, i32::max].map(|of| corners.into_iter().reduce(of).unwrap_or(SOMA));
+    if low <= SOMA { low } else { high }
 }
 
 /// The type of walls within a cell, as SWC types are given.
@@ -111,10 +109,15 @@ mod tests {
     }
 
     #[test]
-    fn borders_belong_to_the_section_nearer_to_the_soma() {
+    fn borders_belong_to_somata_and_to_children() {
         assert_eq!(label([(3, 9), (0, 1), (3, 9)]), (0, 1, 1));
-        assert_eq!(label([(3, 9), (2, 8), (2, 7)]), (2, 8, 3));
-        assert_eq!(label([(3, 9), (3, 9), (2, 7)]), (2, 7, 3));
+        assert_eq!(label([(3, 9), (2, 8), (2, 7)]), (3, 9, 4));
+        assert_eq!(label([(3, 9), (3, 9), (2, 7)]), (3, 9, 4));
+    }
+
+    #[test]
+    fn walls_are_told_by_any_corner() {
+        assert_eq!(label([(3, 9), (-1, 1), (0, 9)]), (-1, 1, 0));
     }
 
     #[test]

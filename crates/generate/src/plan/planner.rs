@@ -318,9 +318,9 @@ impl<'a> Planner<'a> {
             center: line.at(place.arc),
             radius: line.radius(place.arc),
             kind,
-            label: Label {
-                sample: ring.label.sample,
-                ..lower
+            label: match ring.label.section == lower.section {
+                true => ring.label,
+                false => lower,
             },
             ..ring
         }

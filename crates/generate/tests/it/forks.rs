@@ -98,8 +98,9 @@ fn a_child_that_forks_again_at_once_is_the_trunk() {
         with_joints += usize::from(mesh.tracing.iter().any(|t| t.role == Role::Joint));
         pairs += crossings(&mesh);
     }
-    // With the thicker or straighter child as the trunk, 90 and 697; with this one, 20 and 292.
-    assert!(with_joints <= 25 && pairs <= 350, "{with_joints}, {pairs}");
+    // With the thicker or straighter child as the trunk, 90 and 697; with this one, 20 and 292, and where the radius is
+    // continuously differentiable, 12 and 365: forks fold less, and so have joints less often.
+    assert!(with_joints <= 20 && pairs <= 400, "{with_joints}, {pairs}");
 }
 
 /// A trunk of radius 1 that bends by 35° at the origin, where a thin branch leaves it in some direction.

@@ -1,8 +1,10 @@
 //! Types and sections of vertices, from those of the faces around them.
 //!
-//! A face takes them from the corner nearest to the soma ([`FaceLabel`]). So a vertex has those of the
-//! one of its faces that is farthest from it: of the highest section; where sections are unknown, of
-//! the highest type.
+//! A face takes them from a corner on the soma, or else from that of the highest section ([`FaceLabel`]). So a vertex
+//! has those of the lowest section among its faces that is not the soma's; where sections are unknown, of the highest
+//! type.
+
+use std::cmp::Reverse;
 
 #[cfg(doc)]
 use crate::FaceLabel;
@@ -13,6 +15,14 @@ use crate::SurfaceVertex;
 pub(super) struct Region {
     pub(super) section: Option<i32>,
     pub(super) kind: i32,
+}
+
+impl Region {
+    /// A vertex has the region of the highest rank.
+    fn rank(&self) -> (bool, Reverse<i32>, i32) {
+        let section = self.section.unwrap_or(0);
+        (section > 0, Reverse(section.max(0)), self.kind)
+    }
 }
 
 /// What is known of each vertex so far.
@@ -26,7 +36,10 @@ impl Regions {
     /// Takes note of a face at a vertex; one of no region says nothing.
     pub(super) fn add(&mut self, vertex: u32, region: Option<Region>) {
         if let Some(known) = self.0.get_mut(vertex as usize) {
-            *known = (*known).max(region);
+            *known = [*known, region]
+                .into_iter()
+                .flatten()
+                .max_by_key(Region::rank);
         }
     }
 

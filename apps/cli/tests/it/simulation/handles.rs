@@ -56,8 +56,8 @@ fn merging_cuts_nothing_off_where_a_neurite_turns_back() {
     // Level, and whether pieces are joined again.
     let cases = [
         ("h5/Neuron.h5", 1, true),
-        ("swc/172993.swc", 1, false),
-        ("swc/172993.swc", 2, false),
+        ("swc/172993.swc", 1, true),
+        ("swc/172993.swc", 2, true),
     ];
     for (path, level, joins) in cases {
         let path = shared_data().join(path).display().to_string();
