@@ -8,8 +8,9 @@ use super::neurotess;
 #[neurotess_testing::test(needs(neurotess_testing::full, neurotess_testing::shared))]
 fn meshes_of_real_cells_have_no_handles() {
     let allen = "sonata/allen/shared_components/morphologies/Scnn1a_473845048_m.swc";
-    // With these options merging makes handles in Neuron, unless small holes are filled.
+    // With these options merging makes handles in one of the two Neurons, unless small holes are filled.
     let loops = "--radii traced --max-aspect 1";
+    let mut filled = 0;
     for (cell, options) in [
         ("swc/Neuron.swc", loops),
         ("h5/Neuron.h5", loops),
@@ -39,8 +40,10 @@ fn meshes_of_real_cells_have_no_handles() {
         if options != loops {
             continue;
         }
-        assert!(!holes.is_empty(), "{path}");
-        assert_eq!(told("holes_filled").expect("told")["count"], holes.len());
+        filled += holes.len();
+        let counted =
+            told("holes_filled").map_or(0, |warning| warning["count"].as_u64().expect("a count"));
+        assert_eq!(counted, holes.len() as u64, "{path}");
         for hole in holes {
             let number = |key: &str| hole[key].as_f64().expect("a number");
             // Far less than the branch there, of 0.05 µm and more.
@@ -49,6 +52,7 @@ fn meshes_of_real_cells_have_no_handles() {
             assert!(number("volume").abs() < 1e-3, "{hole}");
         }
     }
+    assert!(filled > 0, "no cell needs what is tested here");
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::shared))]
