@@ -11,12 +11,12 @@
 //!    ──────●───────────────────●──────
 //! ```
 //!
-//! Planned here, on the skeleton: which child of a fork continues the trunk (trunk.rs), where each other child
-//! leaves it (zone.rs), and how several share it (arrange.rs). A branch becomes a tree of its own, whose
-//! root stands for the inset; two nodes of the trunk stand for the zone's rings. Where the two children of a fork
-//! are the trunk, it is the parent that leaves it, and its path ends in the inset (across.rs). A branch for which
-//! there is no room stays with its fork, which becomes a joint. The quads are made when the trunk's final
-//! rings are known: shape.rs and assemble.
+//! Planned here: which child of a fork continues the trunk (trunk.rs), where each other child leaves it (zone.rs), and how
+//! several share it (arrange.rs). All of it becomes paths (path.rs): the branch's begins in an inset, and two rings of the
+//! trunk's stand for the zone. Where the two children of a fork are the trunk, it is the parent that leaves it, and its path
+//! ends in the inset (across.rs). A branch for which there is no room stays with its fork, which becomes a joint. Rings that
+//! are in each other's way give way (planes.rs, joint_room.rs). The quads are made when all that is known: shape.rs and
+//! `tubes`.
 
 mod across;
 mod arrange;
