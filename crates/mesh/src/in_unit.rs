@@ -1,8 +1,6 @@
 //! The one place that scales a surface to another unit.
 
-use glam::DVec3;
-
-use crate::{Faces, Placed, Region, Soundness, Surface, SurfaceVertex, Unit};
+use crate::{Placed, Surface, Unit, forward_surface};
 
 /// A surface in µm with coordinates and radii in another unit. Nothing is copied.
 pub struct InUnit<'a> {
@@ -21,57 +19,23 @@ impl<'a> InUnit<'a> {
 }
 
 impl Surface for InUnit<'_> {
-    fn origin(&self) -> DVec3 {
-        self.placed.origin()
-    }
+    forward_surface!(
+        placed: origin regions soundness vertex_count triangle_count quad_count
+        vertex_blocks face_blocks faces vertices
+    );
 
     fn unit(&self) -> Unit {
         self.unit
-    }
-
-    fn regions(&self) -> Vec<Region> {
-        self.placed.regions()
-    }
-
-    fn soundness(&self) -> Option<Soundness> {
-        self.placed.soundness()
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.placed.vertex_count()
-    }
-
-    fn triangle_count(&self) -> usize {
-        self.placed.triangle_count()
-    }
-
-    fn quad_count(&self) -> usize {
-        self.placed.quad_count()
-    }
-
-    fn vertex_blocks(&self) -> usize {
-        self.placed.vertex_blocks()
-    }
-
-    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
-        self.placed.vertices(block, out);
-    }
-
-    fn face_blocks(&self) -> usize {
-        self.placed.face_blocks()
-    }
-
-    fn faces(&self, block: usize, out: &mut Faces) {
-        self.placed.faces(block, out);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     use super::*;
     use crate::SurfaceMesh;
+    use crate::{Faces, SurfaceVertex};
 
     fn point_um() -> SurfaceMesh {
         let vertex = SurfaceVertex {

@@ -32,6 +32,7 @@ mod crossing;
 mod face_types;
 mod forest;
 mod format;
+mod forward;
 mod gaps;
 mod in_unit;
 mod intersect;
@@ -60,6 +61,8 @@ pub use coarse::{
 };
 pub use forest::Forest;
 pub use format::{Format, UnknownFormat};
+/// What signatures here name.
+pub use glam;
 pub use in_unit::InUnit;
 pub use intersect::{
     Search, search_self_intersections, search_self_intersections_stoppable, self_intersections,

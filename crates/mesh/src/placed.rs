@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3, Mat3};
 
-use crate::{Faces, Region, Soundness, Surface, SurfaceVertex, Unit};
+use crate::{Region, Soundness, Surface, SurfaceVertex, forward_surface};
 
 /// A surface under a rotation, a uniform scale and a translation. Nothing is copied: blocks are moved
 /// when they are asked for.
@@ -33,12 +33,10 @@ impl<'a> Placed<'a> {
 }
 
 impl Surface for Placed<'_> {
+    forward_surface!(surface: unit vertex_count triangle_count quad_count vertex_blocks face_blocks faces);
+
     fn origin(&self) -> DVec3 {
         self.origin
-    }
-
-    fn unit(&self) -> Unit {
-        self.surface.unit()
     }
 
     fn regions(&self) -> Vec<Region> {
@@ -58,22 +56,6 @@ impl Surface for Placed<'_> {
         })
     }
 
-    fn vertex_count(&self) -> usize {
-        self.surface.vertex_count()
-    }
-
-    fn triangle_count(&self) -> usize {
-        self.surface.triangle_count()
-    }
-
-    fn quad_count(&self) -> usize {
-        self.surface.quad_count()
-    }
-
-    fn vertex_blocks(&self) -> usize {
-        self.surface.vertex_blocks()
-    }
-
     fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
         let first = out.len();
         self.surface.vertices(block, out);
@@ -83,19 +65,12 @@ impl Surface for Placed<'_> {
             vertex.radius *= self.scale;
         }
     }
-
-    fn face_blocks(&self) -> usize {
-        self.surface.face_blocks()
-    }
-
-    fn faces(&self, block: usize, out: &mut Faces) {
-        self.surface.faces(block, out);
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Faces;
     use crate::SurfaceMesh;
     use glam::{DQuat, Vec3};
 

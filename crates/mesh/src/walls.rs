@@ -9,11 +9,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::forest::Forest;
 use crate::{
-    FaceLabel, Faces, Region, Surface, SurfaceMesh, SurfaceVertex, WALL, self_intersections_of,
+    FaceLabel, Region, Surface, SurfaceMesh, SurfaceVertex, WALL, forward_surface,
+    self_intersections_of,
 };
 
 /// A mesh with walls.
@@ -35,40 +36,13 @@ const MAX_SPOKES: usize = 12;
 const SEED: f32 = 0.1;
 
 impl Surface for Walled {
-    fn origin(&self) -> DVec3 {
-        self.mesh.origin()
-    }
+    forward_surface!(
+        mesh: origin vertex_count triangle_count quad_count vertex_blocks
+        face_blocks faces vertices
+    );
 
     fn regions(&self) -> Vec<Region> {
         self.regions.clone()
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.mesh.vertex_count()
-    }
-
-    fn triangle_count(&self) -> usize {
-        self.mesh.triangle_count()
-    }
-
-    fn quad_count(&self) -> usize {
-        self.mesh.quad_count()
-    }
-
-    fn vertex_blocks(&self) -> usize {
-        self.mesh.vertex_blocks()
-    }
-
-    fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
-        self.mesh.vertices(block, out);
-    }
-
-    fn face_blocks(&self) -> usize {
-        self.mesh.face_blocks()
-    }
-
-    fn faces(&self, block: usize, out: &mut Faces) {
-        self.mesh.faces(block, out);
     }
 }
 
@@ -333,7 +307,10 @@ fn crossing(mesh: &SurfaceMesh, disks: &[Disk]) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::Faces;
     use crate::topology;
 
     /// A box of `sides` walls with a tube on top of it: rings of vertices, closed by their middles. Of section 0

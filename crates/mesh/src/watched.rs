@@ -2,9 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use glam::DVec3;
-
-use crate::{Extent, Faces, Region, Soundness, Surface, SurfaceVertex, Unit, Unsound};
+use crate::{Extent, Surface, SurfaceVertex, Unsound, forward_surface};
 
 /// A surface whose vertices are looked at as they are made, for whoever reads them anyway.
 pub struct Watched<'a> {
@@ -33,37 +31,10 @@ impl<'a> Watched<'a> {
 }
 
 impl Surface for Watched<'_> {
-    fn origin(&self) -> DVec3 {
-        self.surface.origin()
-    }
-
-    fn unit(&self) -> Unit {
-        self.surface.unit()
-    }
-
-    fn regions(&self) -> Vec<Region> {
-        self.surface.regions()
-    }
-
-    fn soundness(&self) -> Option<Soundness> {
-        self.surface.soundness()
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.surface.vertex_count()
-    }
-
-    fn triangle_count(&self) -> usize {
-        self.surface.triangle_count()
-    }
-
-    fn quad_count(&self) -> usize {
-        self.surface.quad_count()
-    }
-
-    fn vertex_blocks(&self) -> usize {
-        self.surface.vertex_blocks()
-    }
+    forward_surface!(
+        surface: origin unit regions soundness vertex_count triangle_count
+        quad_count vertex_blocks face_blocks faces
+    );
 
     fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
         let before = out.len();
@@ -73,21 +44,14 @@ impl Surface for Watched<'_> {
         let mut extent = self.extent.lock().unwrap_or_else(PoisonError::into_inner);
         *extent = extent.and(made);
     }
-
-    fn face_blocks(&self) -> usize {
-        self.surface.face_blocks()
-    }
-
-    fn faces(&self, block: usize, out: &mut Faces) {
-        self.surface.faces(block, out);
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     use super::*;
+    use crate::{Faces, Soundness, Unit};
 
     /// A surface of one vertex here, whose tracing is within a micrometer of the origin.
     struct Far(Vec3);

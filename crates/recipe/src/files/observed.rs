@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-use neurotess_mesh::{Faces, Format, Region, Soundness, Surface, SurfaceVertex, Unit};
+use neurotess_mesh::{Faces, Format, Surface, SurfaceVertex, forward_surface};
 
 use super::options::FileOptions;
 use crate::{Stage, Watch};
@@ -70,44 +70,13 @@ fn passes(options: &FileOptions) -> (usize, usize) {
 }
 
 impl Surface for Observed<'_> {
-    fn origin(&self) -> glam::DVec3 {
-        self.surface.origin()
-    }
-
-    fn unit(&self) -> Unit {
-        self.surface.unit()
-    }
-
-    fn regions(&self) -> Vec<Region> {
-        self.surface.regions()
-    }
-
-    fn soundness(&self) -> Option<Soundness> {
-        self.surface.soundness()
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.surface.vertex_count()
-    }
-
-    fn triangle_count(&self) -> usize {
-        self.surface.triangle_count()
-    }
-
-    fn quad_count(&self) -> usize {
-        self.surface.quad_count()
-    }
-
-    fn vertex_blocks(&self) -> usize {
-        self.surface.vertex_blocks()
-    }
+    forward_surface!(
+        surface: origin unit regions soundness vertex_count
+        triangle_count quad_count vertex_blocks face_blocks
+    );
 
     fn vertices(&self, block: usize, out: &mut Vec<SurfaceVertex>) {
         self.timed(|| self.surface.vertices(block, out));
-    }
-
-    fn face_blocks(&self) -> usize {
-        self.surface.face_blocks()
     }
 
     fn faces(&self, block: usize, out: &mut Faces) {
