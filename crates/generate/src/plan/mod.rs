@@ -44,7 +44,7 @@ pub(crate) use across::is_straight_across;
 pub(crate) use clearance::Disk;
 pub(crate) use cone::{RoundCone, outwards};
 pub(crate) use joint::JointShape;
-pub(crate) use path::{Inset, Joint, Label, Origin, Path, PathEnd, Plan, PlannedRing};
+pub(crate) use path::{Inset, Joint, Label, Origin, Path, PathEnd, Plan, PlannedRing, RingKind};
 pub(crate) use shape::{InsetSite, collar, not_too_steep};
 
 /// What a fork becomes.

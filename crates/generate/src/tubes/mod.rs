@@ -12,4 +12,4 @@ mod twist;
 
 pub(crate) use assembly::{Somata, Tubes, tubes};
 pub(crate) use normals::average_normals;
-pub(crate) use taper::taper;
+pub(crate) use taper::{Straight, taper};

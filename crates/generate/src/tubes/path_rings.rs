@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::taper::taper;
-use crate::plan::{Path, RoundCone};
+use super::taper::{Straight, taper};
+use crate::plan::{Path, RingKind, RoundCone};
 
 /// Segments of the trunk to either side that an inset stands over.
 const TRUNK_SEGMENTS: usize = 3;
@@ -50,6 +50,18 @@ impl PathRings<'_> {
         }
         let length = |i: usize| self.centers[i].distance(self.centers[i + 1]);
         let radii = [ring - 1, ring, ring + 1].map(|i| self.radii[i]);
-        taper(radii, [length(ring - 1), length(ring)])
+        // Between the rings of a zone the trunk stays a cone: bulging, it would cross the branches that leave there.
+        let straight = match self.path.rings[ring].kind {
+            RingKind::Zone {
+                begins: Some(_),
+                ends: None,
+            } => Straight::After,
+            RingKind::Zone {
+                begins: None,
+                ends: Some(_),
+            } => Straight::Before,
+            _ => Straight::Across,
+        };
+        taper(radii, [length(ring - 1), length(ring)], straight)
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, TracingPoint, Vertex};
 
 use crate::judge::refined_patches::RefinedPatches;
-use crate::tubes::taper;
+use crate::tubes::{Straight, taper};
 
 /// How a ring differs from how it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +107,7 @@ impl Ring {
         let taper = taper(
             [before, here, after].map(|ring| ring.radius.into()),
             lengths,
+            Straight::Across,
         ) as f32;
         mesh.tracing[number].taper = taper;
         for &(v, _) in &self.vertices {
