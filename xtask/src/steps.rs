@@ -8,9 +8,12 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, bail};
 
-/// Folder of the workspace.
+/// Folder of the workspace that cargo runs us in. Where two checkouts share a target folder, the one that built this
+/// program may be the other.
 pub(crate) fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    let built = || env!("CARGO_MANIFEST_DIR").into();
+    let xtask = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(built);
+    Path::new(&xtask).join("..")
 }
 
 /// Cargo as it called us, in the workspace.
