@@ -23,14 +23,8 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess-python", "render"),
 ];
 
-/// Those of the quick lane: nothing optional, pictures without circuits, and the command without pictures and
-/// without a window.
-const QUICK: &[(&str, &str)] = &[
-    ("neurotess", ""),
-    ("neurotess", "render"),
-    ("neurotess-cli", ""),
-    ("neurotess-cli", "render"),
-];
+/// Those of the quick lane: the library with nothing optional, and the command with pictures but without a window.
+const QUICK: &[(&str, &str)] = &[("neurotess", ""), ("neurotess-cli", "render")];
 
 /// Checks each combination of features of a lane. The check is clippy's: what that has checked of others' packages
 /// is used again.

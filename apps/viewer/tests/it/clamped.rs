@@ -129,7 +129,7 @@ fn far(a: &[u8], b: &[u8]) -> usize {
     a.chunks(4).zip(b.chunks(4)).filter(far).count()
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn clamping_has_a_key_is_undone_and_kept_in_sessions() {
     let mut window = with_samples(&[Kind::Granule, Kind::Granule]);
     run(&mut window, Edit::Select(vec![1], false));

@@ -95,7 +95,7 @@ fn what_is_dropped_while_others_are_read_comes_after_them() {
     assert_eq!(state(&mut window).messages.problems, []);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_circuit_and_its_report_are_dropped_together() {
     let mut window = window();
     window.step();

@@ -41,7 +41,7 @@ fn letters(window: &mut Window, text: &str) {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_path_is_typed_to_its_end_whatever_the_list_shows() {
     let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");

@@ -101,7 +101,7 @@ fn every_shortcut_runs_its_command_and_nothing_else() {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn tab_hides_the_panels_and_the_keys_after_it_are_heard() {
     let mut window = with_samples(&[Kind::Star]);
     let list = heard(&mut window);

@@ -91,7 +91,7 @@ fn a_pick_scrolls_both_lists_to_its_line() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn what_is_hidden_is_not_marked() {
     let mut window = many(2);
     let row = window.get_by_label("cell_01").rect().center();
@@ -105,7 +105,7 @@ fn what_is_hidden_is_not_marked() {
     assert_eq!(hovered(&mut window), None);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_resized_window_keeps_the_cells_in_view() {
     let mut window = many(3);
     let ends = |window: &mut Window| {
@@ -206,7 +206,7 @@ fn memory_is_shown_whatever_was_opened() {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn the_path_line_completes_and_a_save_dialog_says_what_it_is_for() {
     let mut window = many(1);
     let folder = tempfile::tempdir().expect("a folder");

@@ -200,7 +200,7 @@ fn hit_at_offset(window: &mut Window, position: DVec3) -> Pos2 {
     rect.clamp(hit_at(window, position))
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn the_clipboard_gets_numbers() {
     let mut window = with_samples(&[Kind::Star]);
     let ends = ends(&mut window);

@@ -35,7 +35,7 @@ fn has_orange(window: &mut Window) -> bool {
     picture.as_raw().chunks(4).filter(near).count() > 30
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn an_own_color_recolors_the_picture_at_rest() {
     let mut window = with_samples(&[Kind::Pyramidal]);
     rest(&mut window);

@@ -268,7 +268,7 @@ fn spikes_flash() {
     assert_ne!(slow.as_raw(), fast.as_raw());
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
     let (mut window, folder) = with_circuit();
     let other = folder.path().join("other");

@@ -22,7 +22,7 @@ fn grow(places: SpinePlaces) -> Edit {
     Edit::GrowSpines(Some(SpineEdit::at(places)))
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn spines_grow_at_random_and_are_undone() {
     let mut window = with_samples(&[Kind::Granule, Kind::Star]);
     let (none, patches) = spines(&mut window, 0);

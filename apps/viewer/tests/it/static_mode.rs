@@ -87,7 +87,7 @@ fn what_is_played_becomes_fine_when_the_camera_rests() {
     assert!(state(&mut window).messages.problems.is_empty());
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn ghosts_and_what_is_hidden_are_another_picture() {
     let (mut window, _folder) = with_circuit();
     set_look(&mut window, |look| look.ghost_others = true);

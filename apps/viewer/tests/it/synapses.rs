@@ -116,7 +116,7 @@ fn synapses_show_and_are_undone() {
     assert!(state(&mut window).messages.problems.is_empty());
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn only_those_of_cells_that_are_shown_and_selected() {
     let (mut window, _folder) = with_synapses();
     run(&mut window, Edit::ShowSynapses(true));

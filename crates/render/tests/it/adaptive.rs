@@ -341,7 +341,7 @@ fn impossible_instances_are_errors() {
     ));
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn scenes_beyond_a_million_patches_are_drawn_in_rounds() {
     let gpu = device();
     let mesh = cell(6, 24);

@@ -17,7 +17,7 @@ fn circuit() -> Work {
     work
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn synapses_of_the_cells_that_are_drawn_are_shown() {
     let work = circuit();
     let draw = |options: &str| {

@@ -83,7 +83,7 @@ fn a_scaled_mesh_is_the_same_and_only_opaque_ones_move_the_camera() {
     assert!(away != plain && opaque != plain && opaque != away);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn films_are_colored_anew_with_their_meshes() {
     let work = Work::new();
     work.run("synth circuit -o c --neurons 5 --morphologies 2 --points 80 --reported 5")

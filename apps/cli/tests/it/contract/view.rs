@@ -61,7 +61,7 @@ fn a_window_opens_a_file_is_driven_and_closes() {
     assert!(remembered.contains("cell.swc"), "{remembered}");
 }
 
-#[neurotess_testing::test(needs(gpu, display))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu, display))]
 fn a_window_without_edits_quits_without_a_question() {
     let display = Display::open();
     let work = Work::new();

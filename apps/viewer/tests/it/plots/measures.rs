@@ -24,7 +24,7 @@ fn plot_of(window: &mut Window, measure: Measure) -> Plot {
     Plot::clone(plot.expect("few spheres"))
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn measures_of_selected_cells_are_plotted_and_saved() {
     let mut window = with_samples(&[Kind::Pyramidal, Kind::Granule]);
     run(&mut window, Edit::SelectAll);

@@ -189,7 +189,7 @@ fn the_surface_follows_the_soma_editor() {
     assert_eq!(volume(&mut window), usual);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn a_rectangle_selects_the_cells_whose_somata_are_inside() {
     let mut window = with_samples(&[Kind::Star, Kind::Granule, Kind::Basket]);
     run(&mut window, Edit::SetGrid(true));
