@@ -64,7 +64,9 @@ impl Body {
             ..*options
         };
         let mut report = UnionReport::default();
-        match merge(&mut tried, pairs, &options, &mut report, check) {
+        // A body that fits crosses less with each round.
+        let most = pairs.len();
+        match merge(&mut tried, pairs, most, &options, &mut report, check) {
             Ok(left) => Ok(left.is_empty().then_some(tried)),
             Err(UnionError::Failed(_)) => Ok(None),
             Err(other) => Err(other),

@@ -17,6 +17,10 @@ use crate::smooth::{renew_normals, smooth};
 use crate::tunnels::fill;
 use crate::work::Work;
 
+/// Merging is given up where a round leaves this many times the crossing pairs that there were. Of all cells that merge
+/// none has more after a round than before; where rounds make crossings they multiply, and so does memory.
+const MAX_GROWTH: usize = 4;
+
 /// A surface without crossings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Union {
@@ -77,7 +81,8 @@ pub fn union_stoppable(
         report.pressed_places = pressed.collect();
     }
 
-    pairs = merge(&mut work, pairs, options, &mut report, &check)?;
+    let most = MAX_GROWTH * pairs.len();
+    pairs = merge(&mut work, pairs, most, options, &mut report, &check)?;
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
         report.joined = rejoin(&mut work, mesh, options, &check)?;
         report.cut_off = still_cut_off(&work);

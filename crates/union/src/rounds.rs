@@ -17,17 +17,19 @@ const EXACT_ROUNDS: u32 = 2;
 /// Most rings of neighbors that an arrangement is tried with.
 const MAX_RINGS: u32 = 4;
 
-/// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. `check` is asked between
+/// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. It is given up once a round leaves
+/// more than `most` pairs: what multiplies takes ever more time and memory, and comes to nothing. `check` is asked between
 /// steps whether to stop.
 pub(crate) fn merge(
     work: &mut Work,
     mut pairs: Vec<[u32; 2]>,
+    most: usize,
     options: &UnionOptions,
     report: &mut UnionReport,
     check: &dyn Fn() -> Result<(), UnionError>,
 ) -> Result<Vec<[u32; 2]>, UnionError> {
     let mut needles = options.needles;
-    while !pairs.is_empty() && report.rounds < options.rounds {
+    while !pairs.is_empty() && pairs.len() <= most && report.rounds < options.rounds {
         report.rounds += 1;
         check()?;
         if report.rounds > EXACT_ROUNDS {
