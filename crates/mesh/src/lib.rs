@@ -23,6 +23,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod areas;
 mod bvh;
 mod bytes;
 mod check;
@@ -54,6 +55,7 @@ mod watched;
 mod weld;
 mod write;
 
+pub use areas::{areas_by, section_areas};
 pub use bytes::{ByteReader, ByteWriter, BytesError};
 pub use check::{Report, check};
 pub use coarse::{

@@ -191,6 +191,10 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["quads", "resume", "shard"],
           help_heading = "Output")]
     pub(crate) table: Option<PathBuf>,
+    /// Also write a row for each section: SWC type, samples, length, and the area of its frusta beside that on the mesh
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["resume", "shard"],
+          help_heading = "Output")]
+    pub(crate) areas: Option<PathBuf>,
     /// Do every N-th input only, from the I-th on, 1 ≤ I ≤ N
     #[arg(long, value_name = "I/N", help_heading = "Many inputs")]
     pub(crate) shard: Option<Shard>,
@@ -206,6 +210,16 @@ pub(crate) struct MeshArgs {
     pub(crate) strict: bool,
     #[command(flatten)]
     pub(crate) cells: CellArgs,
+}
+
+impl MeshArgs {
+    /// The files of tables about one cell, each with its flag.
+    pub(super) fn tables(&self) -> impl Iterator<Item = (&'static str, &PathBuf)> {
+        let files = [("--table", &self.table), ("--areas", &self.areas)];
+        files
+            .into_iter()
+            .filter_map(|(flag, file)| Some((flag, file.as_ref()?)))
+    }
 }
 
 /// `--path`

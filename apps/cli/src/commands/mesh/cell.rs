@@ -1,6 +1,6 @@
 //! One cell: read, generate, refine and write.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -16,10 +16,10 @@ use serde::Serialize;
 
 use super::options::MeshOptions;
 use super::warning::CellWarning;
-use super::{size, table};
+use super::{areas, size, table};
 use crate::io::claims::Claimed;
 use crate::io::morphologies::read_morphology;
-use crate::io::output::{OutputError, begin, existing};
+use crate::io::output::{Output, OutputError, begin, existing};
 use crate::io::targets::Job;
 use crate::report::{Failure, Progress as Bar, Reporter};
 
@@ -118,7 +118,7 @@ pub(super) struct Made {
     pub(super) files: CellFiles,
 }
 
-/// Generates the mesh of one cell and writes it, with its table if there is to be one.
+/// Generates the mesh of one cell and writes it, with the tables that are asked for.
 pub(super) fn mesh(
     job: &Job,
     options: &MeshOptions,
@@ -127,19 +127,27 @@ pub(super) fn mesh(
 ) -> Result<Made, Failure> {
     let file = job.input.display();
     let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-    // Before the work: it may be in the way.
-    let path = options.table.as_deref();
-    let table = path.map(|path| begin(path, options.force)).transpose();
-    let table = table.map_err(failed)?;
+    // Before the work: they may be in the way.
+    let begun = |path: &Option<PathBuf>| -> Result<Option<(PathBuf, Output)>, Failure> {
+        let path = path.as_ref();
+        let begun = path.map(|path| Ok((path.clone(), begin(path, options.force)?)));
+        begun.transpose().map_err(failed)
+    };
+    let (table, areas) = (begun(&options.table)?, begun(&options.areas)?);
     let prepared = prepare(&job.input, options)?;
     let surface = prepared.surface(options);
     let to = Target { job, claimed };
     let mut made = finish(&prepared, &surface, options, to, None, watchers)?;
-    if let (Some(path), Some(mut table)) = (path, table) {
-        let morphology = &prepared.meshed.morphology;
-        table::write(surface.surface.surface(), morphology, table.file())
-            .map_err(|e| failed(OutputError::broken(path, std::io::Error::other(e))))?;
+    let (shown, morphology) = (surface.surface.surface(), &prepared.meshed.morphology);
+    if let Some((path, mut table)) = table {
+        let written = table::write(shown, morphology, table.file());
+        written.map_err(|e| failed(OutputError::broken(&path, std::io::Error::other(e))))?;
         made.files.add(table);
+    }
+    if let Some((path, mut areas)) = areas {
+        let written = areas::write(shown, morphology, areas.file());
+        written.map_err(|e| failed(OutputError::broken(&path, std::io::Error::other(e))))?;
+        made.files.add(areas);
     }
     Ok(made)
 }

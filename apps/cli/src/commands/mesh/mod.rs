@@ -5,6 +5,7 @@
 //!                  └────────▶ MeshOptions ─────────────▲
 //! ```
 
+mod areas;
 mod args;
 mod cell;
 mod circuit;
@@ -44,8 +45,10 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if let [path] = &circuits[..]
         && others.is_empty()
     {
-        if args.table.is_some() {
-            return usage("--table is of one cell, not of a circuit: leave it out");
+        if let Some((flag, _)) = args.tables().next() {
+            return usage(format!(
+                "{flag} is of one cell, not of a circuit: leave it out"
+            ));
         }
         return circuit::run(args, path, reporter);
     }
@@ -59,13 +62,15 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
-    if let Some(table) = &args.table {
+    let mut files = vec![("-o", out)];
+    for (flag, table) in args.tables() {
         if !inputs.one_file {
-            return usage("--table is of one cell: give one input file");
+            return usage(format!("{flag} is of one cell: give one input file"));
         }
-        if table == out {
-            return usage("--table and -o name the same file: give two");
+        if let Some((other, _)) = files.iter().find(|(_, file)| *file == table) {
+            return usage(format!("{flag} and {other} name the same file: give two"));
         }
+        files.push((flag, table));
         output::reserve_standard(table, reporter)?;
     }
     let options = MeshOptions::new(args, &inputs, measure)?;

@@ -23,6 +23,8 @@ pub(crate) struct MeshOptions {
     pub(crate) files: FileOptions,
     /// Where a row for each triangle goes.
     pub(crate) table: Option<PathBuf>,
+    /// Where a row for each section goes.
+    pub(crate) areas: Option<PathBuf>,
     pub(crate) force: bool,
     /// Whether volume and area are measured, which takes a pass over the surface.
     pub(crate) measure: bool,
@@ -37,6 +39,7 @@ impl MeshOptions {
             files,
             strict: _,
             table: _,
+            areas: _,
             force: _,
             measure: _,
         } = self;
@@ -107,6 +110,7 @@ impl MeshOptions {
             recipe,
             files,
             table: args.table.clone(),
+            areas: args.areas.clone(),
             force: args.out.force,
             measure,
         })
@@ -241,6 +245,7 @@ mod tests {
             recipe: recipe::MeshOptions::default(),
             files: FileOptions::new(Format::Ply),
             table: None,
+            areas: None,
             force: false,
             measure: false,
         };

@@ -1,6 +1,7 @@
-//! Files for simulators: what `docs/simulation.md` shows, and what `--unit`, `--table` and `--walls` write, and
+//! Files for simulators: what `docs/simulation.md` shows, what `--unit`, `--table`, `--areas` and `--walls` write, and
 //! that real cells have no handles.
 
+mod areas;
 mod handles;
 mod page;
 mod radii;
