@@ -36,11 +36,10 @@ class Membrane:
         return node
 
     def source(self, points):
-        """1 µM at all nodes within the soma's radius about its center."""
-        soma = self.points[numpy.unique(self.triangles[self.section == 0])]
-        center = soma.mean(axis=0)
-        radius = numpy.median(numpy.linalg.norm(soma - center, axis=1))
-        return (numpy.linalg.norm(points - center, axis=1) <= radius).astype(float)
+        """1 µM at all nodes in the soma: those whose nearest vertex of the membrane is the soma's."""
+        _, nearest = KDTree(self.points).query(points)
+        section = numpy.ravel(self.surface.point_data["section"])
+        return (section[nearest] == 0).astype(float)
 
     def write(self, calcium, membrane, sections):
         """The calcium of each vertex, with its section and sample, and the mean of each section."""

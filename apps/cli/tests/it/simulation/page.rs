@@ -60,6 +60,11 @@ fn run(folder: &Path, script: &str) -> String {
         #[cfg(not(unix))]
         drop((there, here));
     }
+    shell(folder, script)
+}
+
+/// Runs commands in a folder; what they print.
+fn shell(folder: &Path, script: &str) -> String {
     let beside = |program: &Path| program.parent().map(Path::to_path_buf).expect("a folder");
     let mut path = vec![beside(Path::new(env!("CARGO_BIN_EXE_neurotess")))];
     path.extend(python_with("sys").ok().as_deref().map(beside));
@@ -137,6 +142,41 @@ fn the_page_runs_from_tracing_to_calcium() {
     assert_eq!(volumes.len(), 6, "the soma and five neurites: {printed}");
     let all = volumes.iter().sum::<f64>();
     assert!((all / surface.volume - 1.0).abs() < 1e-3, "{all}");
+}
+
+/// The amount (µM µm³) that two steps of the same experiment begin with.
+fn amounts(printed: &str) -> Vec<f64> {
+    let lines = printed
+        .lines()
+        .filter_map(|line| line.strip_prefix("amount "));
+    lines
+        .map(|line| {
+            let word = line.split(' ').next().expect("a number");
+            word.parse().expect("a number")
+        })
+        .collect()
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::full, simulators))]
+fn the_page_runs_again_and_with_the_other_options() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = blocks("sh").concat();
+    let named = blocks("");
+    let other = named.iter().find(|block| block.contains("OPTIONS="));
+    let other = other.expect("the page names other options").trim();
+    let first = page.lines().find(|line| line.starts_with("OPTIONS="));
+    let with_other = page.replace(first.expect("options"), other);
+    let printed = run(folder.path(), &format!("{page}{page}{with_other}"));
+    let mesh = "neurotess mesh samples/granule.swc -o out/other.ply --json";
+    let report: serde_json::Value =
+        serde_json::from_str(&shell(folder.path(), mesh)).expect("JSON");
+    let soma = report[0]["soma_volume"].as_f64().expect("a volume");
+    // By TetGen and by Gmsh, three times. Nodes stand for what is nearest to them.
+    let amounts = amounts(&printed);
+    assert_eq!(amounts.len(), 6, "{printed}");
+    for amount in amounts {
+        assert!((amount / soma - 1.0).abs() < 0.03, "{amount} of {soma}");
+    }
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, dolfinx))]
