@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5 of 9), level (6), color key (10), kind and run (3) |
 //! | taper | ½ | the lowest 4 bits of a point's taper |
-//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, collar (17), whether it is an inset |
+//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, whether it is an inset, and of that the collar (17), of others which corner lies in a crease (2) and how far out (15) |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
 //! | anchor | 32 | center, reach, radius, tangent, role, taper and collar, color key |
@@ -15,8 +15,8 @@
 //! A point has an implicit ring, four vertices a quarter turn apart, and four lateral patches to
 //! the next point: rings and lateral patches are computed from points alone. Where branches leave
 //! through insets, the rings beside them have corners that are not a quarter turn apart, and those of
-//! insets lie at different heights along the branch: these are **shaped rings**. Some of the four sides
-//! from such a ring to the next are open. Joints, insertions and somata are made of explicit vertices,
+//! insets lie at different heights along the branch; at bends, a corner lies in the crease: these are **shaped rings**.
+//! Some of the four sides from such a ring to the next are open. Joints, insertions and somata are made of explicit vertices,
 //! stored relative to anchors.
 //!
 //! Patches outside of runs name explicit vertices by their index, and after them the corners of shaped
@@ -53,6 +53,12 @@ pub(crate) const SHAPED_OPEN_SHIFT: u32 = 28;
 pub(crate) const SHAPED_INSET: u32 = 1 << 27;
 /// Bit of a collar that is negative.
 pub(crate) const COLLAR_AGAINST: u32 = 1 << 16;
+/// First bit of the corner of a shaped ring that lies in a crease, after how far out it is.
+pub(crate) const CREASE_CORNER_SHIFT: u32 = 15;
+/// Greatest distance of that corner from the center, in radii.
+pub(crate) const MAX_CREASE: f32 = 4.0;
+/// Number of steps of it.
+pub(crate) const CREASE_STEPS: f32 = ((1 << CREASE_CORNER_SHIFT) - 1) as f32;
 /// First bit of an anchor's taper, after its role.
 pub(crate) const ANCHOR_TAPER_SHIFT: u32 = 3;
 /// First bit of an anchor's collar, after its taper.
@@ -166,6 +172,21 @@ pub(crate) fn collar(code: u32) -> f32 {
     }
 }
 
+/// The corner of a ring that lies in a crease, and how far (radii) from the center, as 17 bits; 0 for none.
+pub(crate) fn to_crease(corner: usize, reach: f32) -> u32 {
+    let steps = (reach * (CREASE_STEPS / MAX_CREASE) + 0.5).clamp(1.0, CREASE_STEPS);
+    ((corner as u32) << CREASE_CORNER_SHIFT) | steps as u32
+}
+
+/// How far (radii) corner k is from the center.
+pub(crate) fn reach_of_corner(crease: u32, k: usize) -> f32 {
+    let steps = crease & ((1 << CREASE_CORNER_SHIFT) - 1);
+    match steps > 0 && crease >> CREASE_CORNER_SHIFT == k as u32 {
+        true => steps as f32 * (MAX_CREASE / CREASE_STEPS),
+        false => 1.0,
+    }
+}
+
 /// A taper as 8 bits and a sign. The bits are those of its square root, so that small tapers are
 /// accurate.
 pub(crate) fn to_taper(taper: f32) -> u32 {
@@ -239,7 +260,10 @@ pub(crate) struct ShapedRing {
     pub(crate) circle: ImplicitRing,
     pub(crate) turns: [u32; 4],
     pub(crate) heights: [u32; 4],
+    /// Of an inset.
     pub(crate) collar: u32,
+    /// Of any other ring: which corner lies in a crease, and how far out.
+    pub(crate) crease: u32,
 }
 
 impl ShapedRing {
@@ -250,8 +274,9 @@ impl ShapedRing {
             ..self.circle
         };
         let (on_circle, normal) = turned.corner(center, 0);
+        let across = (on_circle - center) * reach_of_corner(self.crease, k);
         let height = signed16(self.heights[k]) * MAX_HEIGHT * radius(self.circle.radius);
-        (on_circle + self.circle.tangent() * height, normal)
+        (center + (across + self.circle.tangent() * height), normal)
     }
 
     /// All but its point and its open sides, as it is stored.
@@ -265,7 +290,7 @@ impl ShapedRing {
         let pair = |k: usize| self.heights[k] | (self.heights[k + 1] << 16);
         [
             a | (b << 10) | (c << 20),
-            d | (self.collar << 10) | inset,
+            d | ((self.collar | self.crease) << 10) | inset,
             pair(0),
             pair(2),
         ]
@@ -285,6 +310,18 @@ pub(crate) fn accurate(sphere: f32, radius: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn creases_keep_their_corner() {
+        for (corner, reach) in [(0, 1.04_f32), (3, 2.4), (2, 1.0)] {
+            let crease = to_crease(corner, reach);
+            for k in 0..4 {
+                let expected = if k == corner { reach } else { 1.0 };
+                assert!((reach_of_corner(crease, k) - expected).abs() < 1e-4);
+            }
+        }
+        assert_eq!([0, 1, 2, 3].map(|k| reach_of_corner(0, k)), [1.0; 4]);
+    }
 
     #[test]
     fn collars_keep_their_direction() {

@@ -10,8 +10,8 @@ use crate::runs::Tube;
 impl Packer<'_> {
     /// Finds the explicit vertices. A ring is implicit, which means that its vertices are computed
     /// from its point, if it is a circle and belongs to a single run, and to no patch outside that
-    /// run but its cap. Other rings of a single run are shaped, if they are near enough to what can
-    /// be computed.
+    /// run but its cap. Other rings of a single run, those at bends among them, are shaped, if they are near enough to what
+    /// can be computed.
     pub(crate) fn find_explicit(&mut self) {
         let mut uses = vec![0_u8; self.mesh.vertices.len()];
         for ring in self.runs.iter().flat_map(|run| &run.rings) {
@@ -37,6 +37,10 @@ impl Packer<'_> {
             for i in 0..self.runs[run].rings.len() {
                 let ring = self.runs[run].rings[i];
                 let shared = ring.iter().any(|&v| uses[v as usize] != 1);
+                if !shared && self.fit(ring).is_none() {
+                    // At a bend: no circle, and perhaps a shaped ring.
+                    ring.iter().for_each(|&v| self.named[v as usize] = true);
+                }
                 if shared || self.fit(ring).is_none() {
                     ring.iter().for_each(|&v| self.explicit[v as usize] = true);
                 }

@@ -1,11 +1,11 @@
 //! Which rings can be computed from their points, and how.
 
 use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
 
 use crate::decode::{
-    ImplicitRing, MAX_HEIGHT, ShapedRing, to_collar, to_octahedral, to_radius, to_signed16,
-    to_taper, to_turn,
+    ImplicitRing, MAX_CREASE, MAX_HEIGHT, ShapedRing, to_collar, to_crease, to_octahedral,
+    to_radius, to_signed16, to_taper, to_turn,
 };
 
 /// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
@@ -66,6 +66,7 @@ pub(crate) fn shaped_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ShapedRin
         turns: offsets.map(|offset| to_turn(tangent, offset)),
         heights: offsets.map(|o| to_signed16(o.dot(tangent) / (MAX_HEIGHT * point.radius))),
         collar: if inset { to_collar(point.collar) } else { 0 },
+        crease: if inset { 0 } else { crease(offsets, point) },
     };
     let alike = (0..4).all(|k| {
         let normal = shaped.corner(point.center, k).1;
@@ -73,6 +74,18 @@ pub(crate) fn shaped_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ShapedRin
     });
     let near = near(mesh, ring, point.radius, |k| shaped.corner(point.center, k));
     (alike && near).then_some(shaped)
+}
+
+/// The corner of a ring that is farther out than the others, as it is stored; 0 for none.
+fn crease(offsets: [Vec3; 4], point: &TracingPoint) -> u32 {
+    let reaches = offsets.map(|offset| offset.reject_from(point.tangent).length() / point.radius);
+    let corners = reaches.into_iter().enumerate();
+    match corners.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((corner, reach)) if reach > 1.0 + MAX_APART && reach <= MAX_CREASE => {
+            to_crease(corner, reach)
+        }
+        _ => 0,
+    }
 }
 
 /// What a ring's four vertices have in common, if they are those of one tracing point.

@@ -295,8 +295,10 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
     ring.turn = select(turns, last, k == 3u) & 0x3ffu;
     let on_circle = ring_corner(ring, 0u);
     let height = signed16(packed[at + 3u + k / 2u] >> (16u * (k & 1u)));
-    let offset = on_circle.offset + ring.tangent * (height * MAX_HEIGHT * ring.radius);
     let role = shaped_role(base, vertex);
+    let extra = (last >> 10u) & 0x1ffffu;
+    let reach = select(reach_of_corner(extra, k), 1.0, role == ROLE_INSET);
+    let offset = on_circle.offset * reach + ring.tangent * (height * MAX_HEIGHT * ring.radius);
     return Corner(
         ring.center + offset,
         on_circle.normal,
@@ -306,9 +308,15 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
         ring.tangent,
         ring.radius,
         role,
-        collar_of_code((last >> 10u) & 0x1ffffu),
+        select(0.0, collar_of_code(extra), role == ROLE_INSET),
         ring.taper,
     );
+}
+
+// How far (radii) corner k of a shaped ring is from the center: at a bend, one lies in the crease.
+fn reach_of_corner(crease: u32, k: u32) -> f32 {
+    let steps = crease & ((1u << CREASE_CORNER_SHIFT) - 1u);
+    return select(1.0, f32(steps) * CREASE_STEP, steps > 0u && (crease >> CREASE_CORNER_SHIFT) == k);
 }
 
 fn own_corner(base: Base, vertex: u32) -> Corner {

@@ -9,7 +9,7 @@ use serde_json::Value;
 const WORSE: f64 = 1.05;
 
 /// Figures whose sums are compared, with how much of them is a trifle in all cells together.
-const COMPARED: [(&str, f64); 10] = [
+const COMPARED: [(&str, f64); 12] = [
     ("near_2", 5.0),
     ("pairs_2", 5.0),
     ("folded_2", 5.0),
@@ -19,14 +19,16 @@ const COMPARED: [(&str, f64); 10] = [
     ("off", 1e-3),
     ("sections", 1e-3),
     ("sections_95", 1e-2),
+    ("inside", 1e-2),
+    ("inside_narrow", 1e-2),
     ("bytes", 0.1),
 ];
 
 /// Markdown, a row for each cell and one of sums.
 pub(super) fn table(figures: &Value) -> String {
     let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
-    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
-    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | bends | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
+    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     for cell in cells(figures) {
         let file = cell["file"].as_str().unwrap_or_default();
         let name = Path::new(file).file_stem().unwrap_or_default();
@@ -40,13 +42,15 @@ pub(super) fn table(figures: &Value) -> String {
         let of = |key: &str| number(&simulation[key]);
         let _ = writeln!(
             text,
-            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
+            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
             cell["points"],
             counts(cell, 2),
             counts(cell, 4),
             100.0 * number(&cell["off"]),
             100.0 * number(&cell["sections"]),
             100.0 * number(&cell["sections_95"]),
+            number(&cell["inside"]),
+            number(&cell["inside_narrow"]),
             number(&cell["volume"]),
             number(&cell["bytes"]),
             1e3 * number(&cell["seconds"]),
@@ -58,21 +62,31 @@ pub(super) fn table(figures: &Value) -> String {
         );
     }
     let all = |key: &str| sum(figures, key);
-    let cells = cells(figures).len().max(1) as f64;
+    let cells_of = cells(figures);
+    let cells = cells_of.len().max(1) as f64;
     let counts = |level: u32| {
         ["near", "pairs", "folded"]
             .map(|what| all(&format!("{what}_{level}")).to_string())
             .join(", ")
     };
+    // Cells count by their bends.
+    let per_bend = |count: &str, inside: &str| {
+        let sums = cells_of
+            .iter()
+            .map(|cell| number(&cell[count]) * number(&cell[inside]));
+        sums.sum::<f64>() / all(count).max(1.0)
+    };
     let _ = writeln!(
         text,
-        "| **all** (off, sections, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.0} | {:.1} | {:.0} | | | | |",
+        "| **all** (off, sections, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | |",
         all("points"),
         counts(2),
         counts(4),
         100.0 * all("off") / cells,
         100.0 * all("sections") / cells,
         100.0 * all("sections_95") / cells,
+        per_bend("bends", "inside"),
+        per_bend("narrow_bends", "inside_narrow"),
         all("volume"),
         all("bytes") / cells,
         1e3 * all("seconds"),

@@ -22,6 +22,10 @@ const SHARP: f64 = 0.5;
 const VERY_SHARP: f64 = 1.83;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
+/// How far apart their inner corners are, which share the crease of the bend: as a share of the centers.
+const OF_ASIDE: f64 = 0.15;
+/// The leg is at most this many asides away from the bend: beyond 120°, rings stay nearer to the tip.
+const MAX_ASIDE: f64 = 1.73;
 /// A neighbor is at least this many radii away, and this many times as far as rings that stand between are from their
 /// traced points: where a path goes to and fro, the rings of two sharp bends would be in the way of each other.
 const MIN_WAY: f64 = 1.0;
@@ -41,6 +45,11 @@ pub(crate) fn split_sharp_bends(plan: &mut Plan) {
                     center: ring.center + bend.inward + aside,
                     normal: bend.normals[k],
                     kind: RingKind::Bend,
+                    crease: ring.crease.and_then(|crease| {
+                        let from = bend.inward + aside;
+                        let crease = crease + (OF_ASIDE * aside - from) / ring.radius;
+                        (crease.length() > 1.0).then_some(crease)
+                    }),
                     ..ring
                 });
             path.rings.splice(bend.ring..=bend.ring, [before, after]);
@@ -107,8 +116,13 @@ impl Bend {
         // Rings r sin γ / cos(γ / 2) apart, γ = turn / 2 the angle between them, touch: clearance.rs.
         let aside = 0.5 * CLEAR * ring.radius * (0.5 * turn).sin() / (0.25 * turn).cos();
         // With β, half the turn, the angle between `along` and the leg, the ring is `aside` sin β off the leg, of which
-        // cos β is inwards.
-        let inward = 0.5 * turn.sin() * aside;
+        // cos β is inwards. Where the inner corners lie in a crease, the ring goes half-way to the leg itself: then the tube
+        // has the volume of two that meet in a ball.
+        let own = 0.5 * turn.sin();
+        let inward = match ring.crease {
+            Some(_) => 0.5 * (own + (0.5 * turn).tan().min(MAX_ASIDE)) * aside,
+            None => own * aside,
+        };
         let halfway = |a: DVec3, b: DVec3| (a + b).try_normalize().unwrap_or(along);
         Some(Self {
             ring: index,

@@ -23,6 +23,7 @@ mod arrange;
 mod bends;
 mod clearance;
 mod cone;
+mod creases;
 mod crowd;
 mod joint;
 mod joint_room;
@@ -112,6 +113,7 @@ pub(crate) fn plan(
     crowd::split_crowded_joints(&mut plan, warnings);
     joint_room::clear_the_way(&mut plan, warnings);
     planes::set_planes(&mut plan, soma_spheres, may_join, warnings);
+    creases::set_creases(&mut plan);
     bends::split_sharp_bends(&mut plan);
     plan
 }

@@ -106,6 +106,8 @@ pub(crate) struct PlannedRing {
     /// Node of the tracing that it stands for, or the nearest.
     pub(crate) node: u32,
     pub(crate) kind: RingKind,
+    /// At a bend, from the center to the corner on its inner side, in radii: see creases.rs.
+    pub(crate) crease: Option<DVec3>,
 }
 
 /// Why there is a ring.
@@ -134,6 +136,7 @@ impl PlannedRing {
             label: Label::of(node),
             node: index,
             kind: RingKind::Traced,
+            crease: None,
         }
     }
 
@@ -196,6 +199,7 @@ impl Joint {
             label: self.label,
             node: self.fork,
             kind: RingKind::Traced,
+            crease: None,
         }
     }
 }

@@ -54,15 +54,29 @@ fn beside(path: &PathRings<'_>, ring: usize, exit: DVec3) -> (DVec3, DVec3) {
     (base, way - along * way.dot(along))
 }
 
-/// How the rings of zones should turn, so that a quad of each faces its branches. `zones`: first ring,
-/// and the branches.
+/// How rings should turn: those of zones so that a quad of each faces its branches, those at bends so that a corner lies
+/// in the crease. `zones`: first ring, and the branches.
 pub(super) fn targets(
     path: &PathRings<'_>,
     zones: &[(usize, Vec<(u32, Inset)>)],
     out: &mut [Target],
 ) {
     let mut before = out[0].angle;
-    for (ring, insets) in zones {
+    let mut zones = zones.iter().peekable();
+    for ring in 0..=path.last() {
+        let Some((ring, insets)) = zones.next_if(|(first, _)| *first == ring) else {
+            if let Some(crease) = path.crease(ring)
+                && out[ring].weight == 0.0
+            {
+                let angle = crease.angle;
+                before = angle + ((before - angle) / FRAC_PI_2).round() * FRAC_PI_2;
+                out[ring] = Target {
+                    angle: before,
+                    weight: FACING,
+                };
+            }
+            continue;
+        };
         // Mean direction modulo a quarter turn: wide branches weigh more.
         let (mut cos, mut sin) = (0.0, 0.0);
         for (_, inset) in insets {

@@ -10,7 +10,7 @@ use super::facing::{self, Facing, QUARTERS};
 use super::frame;
 use super::path_rings::PathRings;
 use super::twist::{FIXED, Target, relax};
-use crate::plan::{Inset, InsetSite, Path, PathEnd};
+use crate::plan::{Inset, InsetSite, Path, PathEnd, PlannedRing};
 
 /// A zone of a path: its first ring, and the insets there.
 type Zone = (usize, Vec<(u32, Inset)>);
@@ -184,6 +184,11 @@ impl Assembly<'_> {
         };
         let corners = directions
             .map(|direction| self.vertex(planned.center, direction * planned.radius, tracing));
+        if let Some(crease) = rings.crease(ring) {
+            // Its normal stays that of the circle.
+            let position = planned.center + crease.offset * planned.radius;
+            self.mesh.vertices[corners[crease.corner] as usize].position = position.as_vec3();
+        }
         for vertex in corners {
             let vertex = &mut self.mesh.vertices[vertex as usize];
             vertex.normal =
@@ -349,10 +354,12 @@ fn frames(centers: &[DVec3], tangents: &[DVec3], ends: &Ends) -> Vec<DVec3> {
     frames
 }
 
-/// Turns frames as little as possible between the rings that there are, so that quads face the branches that leave.
+/// Turns frames as little as possible between the rings that there are, so that quads face the branches that leave, and corners
+/// lie in the creases of bends.
 fn turn_rings(rings: &mut PathRings<'_>, zones: &[Zone], ends: &Ends) {
     let last = rings.last();
-    if zones.is_empty() && ends.end().is_none() {
+    let is_bend = |ring: &PlannedRing| ring.crease.is_some();
+    if zones.is_empty() && ends.end().is_none() && !rings.path.rings.iter().any(is_bend) {
         return;
     }
     let mut targets = vec![Target::default(); last + 1];
@@ -394,7 +401,11 @@ fn corner_angles(path: &PathRings<'_>, facing: &[Facing]) -> Vec<[f64; 4]> {
                 from += 1;
             }
             let here = facing[from..].iter().take_while(|f| f.ring <= ring);
-            facing::corner_angles(ring, &here.collect::<Vec<_>>())
+            let mut angles = facing::corner_angles(ring, &here.collect::<Vec<_>>());
+            if let Some(crease) = path.crease(ring) {
+                angles[crease.corner] += crease.angle;
+            }
+            angles
         })
         .collect()
 }

@@ -1,5 +1,7 @@
 //! A path as it becomes rings.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec3;
 
 use super::taper::{Straight, taper};
@@ -7,6 +9,15 @@ use crate::plan::{Path, RingKind, RoundCone};
 
 /// Segments of the trunk to either side that an inset stands over.
 const TRUNK_SEGMENTS: usize = 3;
+
+/// The inner corner of a ring at a bend.
+pub(super) struct Crease {
+    pub(super) corner: usize,
+    /// From where the corner would be on a circle (radians), at most 45° either way.
+    pub(super) angle: f64,
+    /// From the center, in radii.
+    pub(super) offset: DVec3,
+}
 
 /// A path with the frames of its rings.
 pub(super) struct PathRings<'a> {
@@ -28,6 +39,18 @@ impl PathRings<'_> {
     pub(super) fn angle(&self, ring: usize, direction: DVec3) -> f64 {
         let side = self.tangents[ring].cross(self.frames[ring]);
         f64::atan2(direction.dot(side), direction.dot(self.frames[ring]))
+    }
+
+    /// At a bend: the corner of the ring that is nearest to the inner side, and the angle of that side.
+    pub(super) fn crease(&self, ring: usize) -> Option<Crease> {
+        let offset = self.path.rings[ring].crease?;
+        let angle = self.angle(ring, offset);
+        let quarter = (angle / FRAC_PI_2).round();
+        Some(Crease {
+            corner: (quarter as i32).rem_euclid(4) as usize,
+            angle: angle - quarter * FRAC_PI_2,
+            offset,
+        })
     }
 
     /// Unit direction to the next ring.

@@ -106,7 +106,8 @@ fn pieces_at_bends_are_hardly_longer() {
             let mut lengths: Vec<f32> = edges(&mesh).map(Vec3::length).collect();
             lengths.sort_by(f32::total_cmp);
             let long = lengths[lengths.len() * 99 / 100];
-            assert!(long < 1.3 * aspect, "{along} {aside} {aspect}: {long}");
+            // Towards a crease the pieces of an edge differ more: with circles at bends, 1.3.
+            assert!(long < 1.45 * aspect, "{along} {aside} {aspect}: {long}");
         }
     }
 }

@@ -25,7 +25,7 @@ fn bytes_per_point(gpu: &Gpu, mesh: &CoarseMesh) -> (f64, usize) {
 }
 
 #[neurotess_testing::test(needs(gpu, shared))]
-fn real_cells_take_26_bytes_a_point() {
+fn real_cells_take_28_bytes_a_point() {
     let gpu = device();
     let entries = std::fs::read_dir(shared_data().join("swc")).expect("tracings");
     let mut paths: Vec<_> = entries
@@ -50,7 +50,8 @@ fn real_cells_take_26_bytes_a_point() {
         if points >= 2000 {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             note!("{each:6.2} bytes a point, {points:6} points: {name}");
-            assert!(each <= 26.0, "{name}: {each}");
+            // 26 with circles at bends: rings with a crease take 20 more, a sixth of all in the worst of these.
+            assert!(each <= 28.0, "{name}: {each}");
         }
     }
 }
