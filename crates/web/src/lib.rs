@@ -6,7 +6,8 @@
 //! what that crate's Rust does around them. Where a browser has no WebGPU, naga's translation of the same formulas runs
 //! in WebGL 2, at one level everywhere.
 //!
-//! **Practice.** [`page`] takes cells with their placements and the colorings that a reader may switch between.
+//! **Practice.** [`shared_page`] takes cells with their placements, [`page`] also the colorings that a reader may switch
+//! between.
 //! Every tracing point has a color key of its own: colors, what is hidden, values over time and picking
 //! are all tables by that key, which the host writes anew.
 #![forbid(unsafe_code)]
@@ -24,13 +25,15 @@ mod page;
 mod recording;
 mod schemes;
 mod shaders;
+mod shared;
 mod shortened;
 mod texture_source;
 
 pub use cell::{PageCell, packed_parts};
 pub use error::WebError;
 pub use markers::PageMarkers;
-pub use page::{Page, PageOptions, page};
+pub use page::{MAX_PAGE_BYTES, Page, PageOptions, page};
 pub use recording::PageRecording;
 pub use schemes::PageScheme;
 pub use shaders::modules;
+pub use shared::shared_page;

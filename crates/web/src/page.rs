@@ -80,6 +80,9 @@ pub struct Page {
     pub points: usize,
 }
 
+/// Pages are larger only if somebody insists: mail takes them, and browsers open them at once.
+pub const MAX_PAGE_BYTES: usize = 2_000_000;
+
 /// Slower than what is usual for the best, and a hundredth smaller.
 const BEST: u32 = 10;
 

@@ -39,6 +39,8 @@ pub enum SaveRequest {
     Picture(PictureFile),
     /// Pictures along views or through time.
     Film(FilmOptions),
+    /// A page of all neurons that show, for a browser.
+    Page(PathBuf),
     /// A plot: as SVG, or its numbers as CSV if the file is called so.
     Plot(PathBuf, Arc<Plot>),
 }

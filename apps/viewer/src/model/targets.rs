@@ -135,6 +135,7 @@ impl State {
             Command::SaveSession(path) if self.is_own_session(path) => Vec::new(),
             Command::SaveSession(path)
             | Command::SavePalette(path)
+            | Command::SavePage(path)
             | Command::SavePlot(_, path) => vec![path.clone()],
             Command::SaveMeshes(meshes) if !meshes.replace => match self.mesh_count(meshes.all) {
                 1 => files_of_mesh(meshes),

@@ -14,3 +14,5 @@ pub(crate) mod pictures;
 pub(crate) mod stage;
 mod still_scene;
 mod templates;
+
+pub(crate) use colors::color_scheme;

@@ -51,6 +51,7 @@ impl FilePanel {
                 let name = format!("{name}.{}", session::EXTENSION);
                 folder.join(name).display().to_string()
             }
+            (FilePurpose::SavePage, _) => folder.join(format!("{name}.html")).display().to_string(),
             (FilePurpose::SavePalette, _) => folder.join("palette.toml").display().to_string(),
             (FilePurpose::SavePlot(of, extension), _) => {
                 let name = plot_name(of);
@@ -133,6 +134,7 @@ impl FilePanel {
             FilePurpose::Meshes => is_folder || is_mesh(path),
             FilePurpose::SaveSession => is_folder || session::is_session(path),
             FilePurpose::OpenPalette | FilePurpose::SavePalette => is_folder || is("toml"),
+            FilePurpose::SavePage => is_folder || is("html"),
             FilePurpose::SavePlot(_, extension) => is_folder || is(extension),
         };
         wanted.then(|| Entry {
@@ -156,6 +158,7 @@ impl FilePanel {
             FilePurpose::SaveSession => "Save the session",
             FilePurpose::OpenPalette => "Open a palette",
             FilePurpose::SavePalette => "Save the palette",
+            FilePurpose::SavePage => "Save a page of what shows, to open in any browser",
             FilePurpose::SavePlot(_, "csv") => "Save the numbers of the plot",
             FilePurpose::SavePlot(..) => "Save the plot",
         };
@@ -245,6 +248,7 @@ impl FilePanel {
                 (false, _) => "No name here begins like that",
                 (true, FilePurpose::SaveSession) => "No folder and no session here yet",
                 (true, FilePurpose::SavePalette) => "No folder and no palette here yet",
+                (true, FilePurpose::SavePage) => "No folder and no page here yet",
                 (true, FilePurpose::SavePlot(..)) => "No folder and no plot here yet",
                 (true, _) => "No folder and no file to open here",
             };
@@ -358,6 +362,10 @@ impl FilePanel {
                 let path = paths.pop().unwrap_or_default();
                 Command::SavePalette(named(&path, "toml", |_| false))
             }
+            FilePurpose::SavePage => {
+                let path = paths.pop().unwrap_or_default();
+                Command::SavePage(named(&path, "html", |_| false))
+            }
             FilePurpose::SavePlot(of, extension) => {
                 let path = paths.pop().unwrap_or_default();
                 let is = |known| {
@@ -377,7 +385,10 @@ impl FilePanel {
 fn saves(purpose: FilePurpose) -> bool {
     matches!(
         purpose,
-        FilePurpose::SaveSession | FilePurpose::SavePalette | FilePurpose::SavePlot(..)
+        FilePurpose::SaveSession
+            | FilePurpose::SavePalette
+            | FilePurpose::SavePage
+            | FilePurpose::SavePlot(..)
     )
 }
 

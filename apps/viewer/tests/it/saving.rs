@@ -182,3 +182,28 @@ fn meshes_for_simulation_are_saved_by_the_panel_and_stop() {
     stop(&mut window, "while merging");
     assert!(names(folder.path()).is_empty());
 }
+
+#[neurotess_testing::test(needs(gpu))]
+fn what_shows_is_saved_as_a_page_for_browsers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = undrawn(&[Kind::Star, Kind::Granule]);
+    run_undrawn(&mut window, Edit::SetHidden(1, true));
+    let file = folder.path().join("cells.html");
+    run_undrawn(&mut window, Command::SavePage(file.clone()));
+    wait(&mut window, "saved", |w| {
+        state(w).messages.status.starts_with("Saved ")
+    });
+    let page = fs::read_to_string(&file).expect("a page");
+    assert!(page.to_lowercase().starts_with("<!doctype html>"));
+    // One cell, and the program around it.
+    assert!((80_000..200_000).contains(&page.len()), "{}", page.len());
+    run_undrawn(&mut window, Edit::SetHidden(0, true));
+    run_undrawn(
+        &mut window,
+        Command::SavePage(folder.path().join("no.html")),
+    );
+    wait(&mut window, "refused", |w| {
+        !state(w).messages.problems.is_empty()
+    });
+    assert_eq!(names(folder.path()), ["cells.html"]);
+}

@@ -6,10 +6,12 @@ mod values;
 
 use std::io::Write;
 
-use neurotess::coloring::{Cell, ColorBy, ColorScheme, Coloring, MarkerSet, OwnColors, coloring};
+use neurotess::coloring::{Cell, ColorScheme, MarkerSet, OwnColors};
 use neurotess::render::color::{CATEGORY_BIT, Rgb};
 use neurotess::render::{Look, Marker, MarkerSettings, Placement};
-use neurotess::web::{PageCell, PageMarkers, PageOptions, PageRecording, PageScheme, page};
+use neurotess::web::{
+    MAX_PAGE_BYTES, PageCell, PageMarkers, PageOptions, PageRecording, shared_page,
+};
 use serde::Serialize;
 
 use crate::commands::render::{
@@ -19,9 +21,6 @@ use crate::commands::render::{
 use crate::io::output;
 use crate::report::{Entry, Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
-
-/// Pages are larger only by `--force`: mail takes them, and browsers open them at once.
-const MAX_BYTES: usize = 2_000_000;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -79,7 +78,7 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     .page(reporter)?;
     let bytes = made.html.len();
-    if bytes > MAX_BYTES && !args.force {
+    if bytes > MAX_PAGE_BYTES && !args.force {
         let size = size_text(bytes);
         anyhow::bail!("the page would have {size}: leave out cells, or use --force");
     }
@@ -109,40 +108,20 @@ impl Content<'_> {
     fn page(&self, reporter: &Reporter) -> anyhow::Result<neurotess::web::Page> {
         let cells = self.cells();
         let scheme = self.scheme();
-        let kinds = [
-            ColorBy::Type,
-            ColorBy::Neurite,
-            ColorBy::Section,
-            ColorBy::BranchOrder,
-            ColorBy::PathDistance,
-            ColorBy::Radius,
-            ColorBy::Neuron,
-        ];
-        // One neuron has one color.
-        let kinds = &kinds[..kinds.len() - usize::from(cells.len() == 1)];
-        let colorings: Vec<Coloring> = kinds
-            .iter()
-            .map(|&by| coloring(&cells, by, &scheme))
-            .collect();
-        let schemes: Vec<PageScheme<'_>> = kinds
-            .iter()
-            .zip(&colorings)
-            .map(|(&by, coloring)| PageScheme { by, coloring })
-            .collect();
         let recording = self.recording(&cells, reporter)?;
         let page_cells: Vec<PageCell<'_>> = cells
             .iter()
             .zip(self.placements)
             .map(|(&cell, &(_, placement))| PageCell { cell, placement })
             .collect();
-        let options = self.options(kinds, recording.as_ref());
         let markers = self.markers(&scheme, reporter)?;
-        let made = page(
+        let made = shared_page(
             &page_cells,
-            &schemes,
+            &scheme,
+            self.args.color_by.and_then(crate::commands::render::by),
             recording.as_ref(),
             &markers,
-            &options,
+            &self.options(),
         );
         // The message only: with its source, it would be printed twice.
         made.map_err(|e| anyhow::anyhow!("{e}"))
@@ -191,15 +170,7 @@ impl Content<'_> {
         }
     }
 
-    fn options(&self, kinds: &[ColorBy], recording: Option<&PageRecording>) -> PageOptions {
-        let first = self.args.color_by.and_then(crate::commands::render::by);
-        let first = match (first, recording) {
-            (None, Some(_)) => None,
-            (by, _) => {
-                let by = by.unwrap_or_default();
-                Some(kinds.iter().position(|&kind| kind == by).unwrap_or(0))
-            }
-        };
+    fn options(&self) -> PageOptions {
         let neurons = self.placements.len();
         let least_width = self.args.least_width.map(|width| width as f32);
         PageOptions {
@@ -208,7 +179,7 @@ impl Content<'_> {
             palette: self.render.base_palette(),
             own_colors: self.own_colors(),
             color_map: self.args.colormap,
-            scheme: first,
+            scheme: None,
             least_width: least_width.unwrap_or_else(|| Look::usual_least_width(neurons)),
         }
     }

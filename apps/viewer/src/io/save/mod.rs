@@ -1,6 +1,7 @@
-//! Writes meshes, plots, and videos of numbered pictures.
+//! Writes meshes, plots, pages, and videos of numbered pictures.
 
 mod meshes;
+mod page;
 mod plots;
 pub(crate) mod video;
 
@@ -8,6 +9,7 @@ use neurotess::output::Existing;
 
 use crate::model::save::Written;
 pub(crate) use meshes::{MeshPlan, SeenFrom, meshes};
+pub(crate) use page::page;
 pub(crate) use plots::plot;
 
 pub(crate) fn existing(replace: bool) -> Existing {

@@ -63,6 +63,8 @@ pub enum FilePurpose {
     OpenPalette,
     /// Saving a palette.
     SavePalette,
+    /// Saving a page for a browser.
+    SavePage,
     /// Saving a plot in a format: `svg` or `csv`.
     SavePlot(PlotOf, &'static str),
 }
@@ -100,6 +102,8 @@ pub enum Command {
     OpenPalette(PathBuf),
     /// Writes the palette, with the colors that were chosen.
     SavePalette(PathBuf),
+    /// Writes a page of all neurons that show, for a browser.
+    SavePage(PathBuf),
     /// Writes a plot, as a figure or as a table by its extension.
     SavePlot(PlotOf, PathBuf),
     /// Cancels reading or saving.
@@ -226,6 +230,7 @@ impl fmt::Debug for Command {
             Self::OpenMeshes(value) => with("OpenMeshes", value),
             Self::OpenPalette(value) => with("OpenPalette", value),
             Self::SavePalette(value) => with("SavePalette", value),
+            Self::SavePage(value) => with("SavePage", value),
             Self::SavePlot(of, value) => {
                 let mut tuple = f.debug_tuple("SavePlot");
                 tuple.field(of).field(value).finish()

@@ -309,6 +309,7 @@ impl State {
             Command::SavePalette(path) => self.effects.push(Effect::SavePalette(path)),
             Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
             Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
+            Command::SavePage(path) => self.save(SaveRequest::Page(path)),
             Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),
             Command::SaveFilm(options) => self.save(SaveRequest::Film(options)),
             Command::SavePlot(of, path) => self.save_plot(of, path),

@@ -11,6 +11,7 @@ use crate::model::film::{FilmFrame, film_frames};
 use crate::model::save::{FilmOptions, SaveRequest};
 use crate::model::session::{self, Session};
 use crate::model::settings;
+use crate::scene::color_scheme;
 use crate::scene::content;
 use crate::scene::dimensions;
 use crate::scene::pictures::{StillScene, pictures};
@@ -73,6 +74,14 @@ impl Viewer {
             }
             SaveRequest::Film(film) => {
                 self.save_film(film);
+            }
+            SaveRequest::Page(path) => {
+                let plans = self.mesh_plans(true);
+                let (look, title) = (self.state.document.look.clone(), self.state.usual_name());
+                let progress = Progress::new("writing the page", "files", 1);
+                self.worker.save(progress, move |_| {
+                    save::page(&path, &title, &plans, &look, &color_scheme(&look))
+                });
             }
             SaveRequest::Plot(path, plot) => {
                 let progress = Progress::new("writing the plot", "files", 1);

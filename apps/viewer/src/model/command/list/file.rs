@@ -65,6 +65,11 @@ pub(super) fn menu() -> Vec<Listed> {
             Some((CTRL, Key::E)),
             Command::Show(Tab::Save),
         ),
+        item(
+            "Share… | save page html web browser send mail",
+            None,
+            Command::AskFiles(FilePurpose::SavePage),
+        ),
         first(
             "Reload changed files",
             Some((CTRL, Key::R)),

@@ -1,0 +1,59 @@
+//! A page with everything that cells can be colored by.
+
+use neurotess_color::{Cell, ColorBy, ColorScheme, Coloring, coloring};
+
+use crate::cell::PageCell;
+use crate::error::WebError;
+use crate::markers::PageMarkers;
+use crate::page::{Page, PageOptions, page};
+use crate::recording::PageRecording;
+use crate::schemes::PageScheme;
+
+/// What readers can color cells by, in the order of the list.
+const KINDS: [ColorBy; 7] = [
+    ColorBy::Type,
+    ColorBy::Neurite,
+    ColorBy::Section,
+    ColorBy::BranchOrder,
+    ColorBy::PathDistance,
+    ColorBy::Radius,
+    ColorBy::Neuron,
+];
+
+/// Makes a page of cells that readers can color by type, neurite, section, branch order, path distance and radius, and
+/// several by neuron. It begins with `first`; with the recording if that is none, or by type without a recording.
+/// `options.scheme` is not used.
+///
+/// # Errors
+/// As [`page`].
+pub fn shared_page(
+    cells: &[PageCell<'_>],
+    scheme: &ColorScheme,
+    first: Option<ColorBy>,
+    recording: Option<&PageRecording>,
+    markers: &PageMarkers,
+    options: &PageOptions,
+) -> Result<Page, WebError> {
+    // One neuron has one color.
+    let kinds = &KINDS[..KINDS.len() - usize::from(cells.len() == 1)];
+    let colored: Vec<Cell<'_>> = cells.iter().map(|page| page.cell).collect();
+    let colorings: Vec<Coloring> = kinds
+        .iter()
+        .map(|&by| coloring(&colored, by, scheme))
+        .collect();
+    let schemes: Vec<PageScheme<'_>> = (kinds.iter().zip(&colorings))
+        .map(|(&by, coloring)| PageScheme { by, coloring })
+        .collect();
+    let begins = match (first, recording) {
+        (None, Some(_)) => None,
+        (by, _) => {
+            let by = by.unwrap_or_default();
+            Some(kinds.iter().position(|&kind| kind == by).unwrap_or(0))
+        }
+    };
+    let options = PageOptions {
+        scheme: begins,
+        ..options.clone()
+    };
+    page(cells, &schemes, recording, markers, &options)
+}
