@@ -35,10 +35,13 @@ from ._errors import (
     ReadWarning,
     RenderError,
 )
-from ._morphology import Morphology, Neurite, Notice, Section, Soma, read, synth
+from ._morphology import Morphology, read, synth
+from ._parts import Neurite, Notice, Section, Soma
 from ._edits import diff, edit
-from ._meshes import Mesh, MeshResult, check, mesh, mesh_many, read_mesh
-from ._circuits import Circuit, Report
+from ._meshes import Mesh, check, read_mesh
+from ._meshing import MeshResult, mesh, mesh_many
+from ._circuits import Circuit
+from ._reports import Report
 from ._pictures import Image, film, render
 
 TYPE_CHECKING = False

@@ -1,4 +1,4 @@
-"""Circuits and recordings."""
+"""Circuits."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ import warnings
 
 from . import _neurotess, _options
 from ._errors import ReadWarning
-from ._meshes import Mesh, Outcome, _of
-from ._morphology import Morphology, Notice, _with_warnings
+from ._meshes import Mesh
+from ._meshing import Outcome, _of
+from ._morphology import Morphology, _with_warnings
+from ._parts import Notice
 from ._packages import needed
 from ._pictures import DrawnCircuit, Image, render
+from ._reports import Report
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
-    from ._meshes import MeshOptions
+    from ._meshing import MeshOptions
 
 
 class Circuit(DrawnCircuit):
@@ -279,132 +282,3 @@ class NodeMesh(Outcome):
 
     def __repr__(self) -> str:
         return f"<NodeMesh {self.node_id} of {self.population!r}: {self._said()}>"
-
-
-class Report:
-    """A recording: values of compartments over time, or spikes. Times are ms.
-
-    Values are read from the file when they are asked for.
-    """
-
-    def __init__(self, path: str | os.PathLike[str], population: str | None = None) -> None:
-        self._report = _neurotess.Report(path)
-        self._path = os.fspath(path)
-        names = self._report.populations
-        if population is None:
-            population = names[0] if names else ""
-        if population not in names:
-            raise ValueError(f"{self._path} has no population {population!r}: it has {names}")
-        self.population: str = population
-        """The population that this is of; `Report(path, population)` is that of another."""
-        self._index = names.index(population)
-        self._told: dict[str, Any] | None = None
-
-    @property
-    def path(self) -> str:
-        """The file."""
-        return self._path
-
-    @property
-    def populations(self) -> list[str]:
-        """Names of the populations in the file."""
-        return self._report.populations
-
-    @property
-    def is_of_spikes(self) -> bool:
-        """Whether it has spikes instead of values."""
-        return self._report.is_of_spikes
-
-    @property
-    def _layout(self) -> dict[str, Any]:
-        if self._told is None:
-            self._told = self._report.layout(self._index)
-        return self._told
-
-    @property
-    def units(self) -> str:
-        """Unit of the values, such as ``"mV"``."""
-        return str(self._layout["units"])
-
-    @property
-    def times(self) -> NDArray[np.float64]:
-        """Times (ms) of the frames, (frames,)."""
-        import numpy as np
-
-        told = self._layout
-        return np.asarray(told["start"] + told["step"] * np.arange(told["frames"]))
-
-    @property
-    def node_ids(self) -> NDArray[np.uint64]:
-        """Ids of the nodes that have values."""
-        ids: NDArray[np.uint64] = self._layout["node_ids"]
-        return ids
-
-    @property
-    def offsets(self) -> NDArray[np.uint64]:
-        """Compartments of node k are those from ``offsets[k]`` on, before ``offsets[k + 1]``."""
-        offsets: NDArray[np.uint64] = self._layout["offsets"]
-        return offsets
-
-    def _columns(self, node: int | None) -> list[int] | None:
-        if node is None:
-            return None
-        import numpy as np
-
-        found = np.flatnonzero(self.node_ids == node)
-        if not len(found):
-            raise KeyError(f"no values of node {node}")
-        first, end = self.offsets[found[0] : found[0] + 2].tolist()
-        return list(range(first, end))
-
-    def compartments(self, node: int) -> pd.DataFrame:
-        """A table of a node's compartments: ``section`` (0 is the soma), ``along`` (0 to 1); needs pandas."""
-        import numpy as np
-
-        self._columns(node)
-        index = int(np.flatnonzero(self.node_ids == node)[0])
-        sections, along = self._report.compartments(self._index, index)
-        pandas = needed("pandas", "circuit")
-        return pandas.DataFrame({"section": sections.astype("int64"), "along": along})
-
-    def values(
-        self,
-        node: int | None = None,
-        *,
-        start: float | None = None,
-        stop: float | None = None,
-    ) -> NDArray[np.float32]:
-        """Values (frames, compartments) of a node, or of all, from `start` on and before `stop` (ms)."""
-        import numpy as np
-
-        first, end = 0, len(self.times)
-        if start is not None:
-            first = int(np.searchsorted(self.times, start - 1e-9))
-        if stop is not None:
-            end = max(first, int(np.searchsorted(self.times, stop - 1e-9)))
-        return self._report.values(self._index, (first, end), self._columns(node))
-
-    def at(self, time: float, node: int | None = None) -> NDArray[np.float32]:
-        """Values (compartments,) of the frame that shows at a time (ms)."""
-        told = self._layout
-        frame = int((time - told["start"]) / told["step"] + 1e-6)
-        if not 0 <= frame < told["frames"] or time < told["start"]:
-            raise ValueError(f"no frame shows at {time} ms")
-        return self._report.values(self._index, (frame, frame + 1), self._columns(node))[0]
-
-    @property
-    def spikes(self) -> pd.DataFrame:
-        """A table of spikes: ``time`` (ms), ``node_id``; needs pandas."""
-        pandas = needed("pandas", "circuit")
-        times, nodes = self._report.spikes(self._index)
-        return pandas.DataFrame({"time": times, "node_id": nodes.astype("int64")})
-
-    def __reduce__(self) -> tuple[type[Report], tuple[str, str]]:
-        return type(self), (self._path, self.population)
-
-    def __repr__(self) -> str:
-        if self.is_of_spikes:
-            return f"<Report {self._path!r}: spikes of {self.population!r}>"
-        told = self._layout
-        nodes, frames = len(told["node_ids"]), told["frames"]
-        return f"<Report {self._path!r}: {frames} frames of {nodes} nodes of {self.population!r}>"

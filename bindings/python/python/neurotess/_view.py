@@ -163,7 +163,8 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     # Making
 
     def _set_report(self, report: str) -> None:
-        from ._circuits import Circuit, Report
+        from ._circuits import Circuit
+        from ._reports import Report
 
         if not isinstance(self._what, Circuit):
             raise ValueError("a report needs a circuit, whose cells have its values")

@@ -14,7 +14,7 @@ import tempfile
 from collections import namedtuple
 
 from . import __version__, _neurotess
-from ._meshes import _mesh
+from ._meshing import _mesh
 from ._morphology import Morphology, _read
 
 TYPE_CHECKING = False
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from ._meshes import MeshOptions
+    from ._meshing import MeshOptions
 
     class Made(NamedTuple):
         """What became of a file."""

@@ -1,0 +1,260 @@
+"""Cells to meshes: one, or many."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+
+from . import _neurotess
+from ._meshes import Mesh
+from ._morphology import Morphology, _read, read
+from ._parts import Notice
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any, Literal, TypedDict
+
+    from typing_extensions import Unpack
+
+    Source = Morphology | str | os.PathLike[str]
+
+    class MeshOptions(TypedDict, total=False):
+        """The options of `mesh`."""
+
+        level: int | None
+        max_error: float | None
+        level_along: int | None
+        isotropic: bool | float
+        max_edge: float | None
+        min_edge: float | None
+        max_aspect: float | None
+        path: Literal["hermite", "linear"] | None
+        caps: Literal["round", "flat"] | None
+        crossings: Literal["keep", "merge", "separate"] | None
+        simulation: bool
+        soma: Literal["fem", "sphere", "profile", "none"] | None
+        poisson: float | None
+        soma_scale: float | None
+        radii: Literal["traced", "equal-area", "equal-perimeter"] | None
+        radius_factor: float | None
+        radius: float | None
+        min_radius: float | None
+        soma_sphere: Literal["cube", "octahedron"] | None
+        soma_level: int | None
+        ring: Mapping[int, float] | None
+        smooth: float | Literal["auto"] | None
+        types: Sequence[str | int] | str | None
+        quads: bool
+
+
+def mesh(
+    cell: Source,
+    *,
+    level: int | None = None,
+    max_error: float | None = None,
+    level_along: int | None = None,
+    isotropic: bool | float = False,
+    max_edge: float | None = None,
+    min_edge: float | None = None,
+    max_aspect: float | None = None,
+    path: Literal["hermite", "linear"] | None = None,
+    caps: Literal["round", "flat"] | None = None,
+    crossings: Literal["keep", "merge", "separate"] | None = None,
+    simulation: bool = False,
+    soma: Literal["fem", "sphere", "profile", "none"] | None = None,
+    poisson: float | None = None,
+    soma_scale: float | None = None,
+    radii: Literal["traced", "equal-area", "equal-perimeter"] | None = None,
+    radius_factor: float | None = None,
+    radius: float | None = None,
+    min_radius: float | None = None,
+    soma_sphere: Literal["cube", "octahedron"] | None = None,
+    soma_level: int | None = None,
+    ring: Mapping[int, float] | None = None,
+    smooth: float | Literal["auto"] | None = None,
+    types: Sequence[str | int] | str | None = None,
+    quads: bool = False,
+    threads: int | None = None,
+) -> Mesh:
+    """Makes the closed surface of a cell: of a `Morphology`, or of a file.
+
+    The options are those of ``neurotess mesh``.
+
+    Refinement:
+
+    - `level`: subdivisions of each coarse edge, 1 to 64 (4 if nothing is said); 0 gives the coarse quads
+    - `max_error`: instead, as fine as keeps the surface within so many µm of that of level 64
+    - `level_along`: subdivisions along neurites; `level` is then for the edges around them
+    - `isotropic`: instead, edges about as long as the local radius, or a factor of it; with `max_edge`,
+      `min_edge` (µm) and `max_aspect`
+    - `path`: ``"hermite"`` (smooth) or ``"linear"`` between traced points; `caps`: ``"round"`` or ``"flat"``
+    - `quads`: quads where possible, instead of triangles
+
+    Crossings:
+
+    - `crossings`: what becomes of places where the surface crosses itself: ``"keep"``, ``"merge"`` (the exact
+      union) or ``"separate"`` (branches traced through one another are moved apart, the rest is merged)
+    - `simulation`: a mesh that solvers take, or a `MeshError` that says where it fails
+
+    Soma and tracing:
+
+    - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `poisson` (0.3), `soma_scale` (1),
+      `soma_sphere`, `soma_level`
+    - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
+    - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
+      ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume;
+      ``"equal-perimeter"``: as keeps the traced area of the membrane
+    - `radius_factor`: a factor on the radii of neurites, as for printing in three dimensions
+    - `radius`: that of points without one (µm), else taken from their neighbors; `min_radius`: the least of neurites
+    - `smooth`: smooths the noise of the tracing away by this length (µm), or ``"auto"``
+    - `types`: keeps only these, as in ``["axon", 3, "custom_9"]``
+
+    `threads` to use; all cores if it is left out. The result is the same for any number of them.
+
+    Raises ``ValueError`` for options, `MeshError` for cells that cannot be meshed, `ReadError` for files.
+
+    >>> import neurotess as nt
+    >>> mesh = nt.mesh(nt.synth("granule", points=100), level=2)
+    >>> mesh.closed, mesh.vertices.dtype, mesh.faces.shape[1]
+    (True, dtype('float64'), 3)
+    """
+    options: dict[str, Any] = {
+        "level": level,
+        "max_error": max_error,
+        "level_along": level_along,
+        "isotropic": isotropic,
+        "max_edge": max_edge,
+        "min_edge": min_edge,
+        "max_aspect": max_aspect,
+        "path": path,
+        "caps": caps,
+        "crossings": crossings,
+        "simulation": simulation,
+        "soma": soma,
+        "poisson": poisson,
+        "soma_scale": soma_scale,
+        "radii": radii,
+        "radius_factor": radius_factor,
+        "radius": radius,
+        "min_radius": min_radius,
+        "soma_sphere": soma_sphere,
+        "soma_level": soma_level,
+        "ring": ring,
+        "smooth": smooth,
+        "types": types,
+        "quads": quads,
+    }
+    recipe = _neurotess.Recipe(options)
+    if not isinstance(cell, Morphology):
+        cell = read(cell)
+    return _mesh(recipe, cell, threads)
+
+
+def _mesh(
+    recipe: _neurotess.Recipe, cell: Morphology, threads: int | None, stop: _neurotess.Stop | None = None
+) -> Mesh:
+    surface, report = recipe.mesh(cell._cell, threads, stop)
+    return _of(surface, report, cell.warnings, cell.name)
+
+
+def _of(surface: _neurotess.Surface, report: dict[str, Any], read: list[Notice], name: str) -> Mesh:
+    mended = [
+        Notice(w["code"], w["message"], w["count"], w["line"], w["sample"]) for w in report.pop("warnings")
+    ]
+    return Mesh(surface, report, (*read, *mended), name)
+
+
+class Outcome:
+    """A mesh, or the error instead of it."""
+
+    mesh: Mesh | None
+    """The mesh; none if there is an error."""
+    error: Exception | None
+    """Why there is none."""
+
+    __slots__ = ("error", "mesh")
+
+    def __init__(self, mesh: Mesh | None, error: Exception | None) -> None:
+        self.mesh = mesh
+        self.error = error
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a mesh."""
+        return self.error is None
+
+    def _said(self) -> str:
+        return repr(self.mesh if self.ok else self.error)
+
+
+class MeshResult(Outcome):
+    """What became of a cell in `mesh_many`: a mesh, or the error that it met."""
+
+    input: Source
+    """What was to be meshed."""
+
+    __slots__ = ("input",)
+
+    def __init__(self, input: Source, mesh: Mesh | None, error: Exception | None) -> None:
+        super().__init__(mesh, error)
+        self.input = input
+
+    def __repr__(self) -> str:
+        return f"<MeshResult {self.input!r}: {self._said()}>"
+
+
+def mesh_many(
+    cells: Iterable[Source], *, threads: int | None = None, **options: Unpack[MeshOptions]
+) -> Iterator[MeshResult]:
+    """Meshes many cells or files on `threads` threads (all cores), with the options of `mesh`.
+
+    Gives a `MeshResult` for each cell, in their order. An error is a value: one bad file never ends the batch.
+    Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
+    ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only. Ctrl-C, and ``close()`` of the iterator,
+    stop the work.
+
+    >>> import neurotess as nt
+    >>> cells = [nt.synth("granule", seed=seed, points=100) for seed in range(3)]
+    >>> [result.ok for result in nt.mesh_many(cells, threads=2, level=1)]
+    [True, True, True]
+    """
+    recipe = _neurotess.Recipe(dict(options))
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads={threads} is not 1 or more")
+    return _results(cells, recipe, threads or _cores())
+
+
+def _cores() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1
+
+
+def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[MeshResult]:
+    from concurrent.futures import ThreadPoolExecutor
+
+    stop = _neurotess.Stop()
+
+    def one(cell: Source) -> MeshResult:
+        try:
+            read = cell if isinstance(cell, Morphology) else Morphology(_read(cell, None, None, False))
+            # A cell has one thread: all are busy with others.
+            return MeshResult(cell, _mesh(recipe, read, 1, stop), None)
+        except Exception as error:
+            return MeshResult(cell, None, error)
+
+    pool = ThreadPoolExecutor(threads, thread_name_prefix="neurotess")
+    waiting: deque[Any] = deque()
+    try:
+        for cell in cells:
+            waiting.append(pool.submit(one, cell))
+            if len(waiting) >= 2 * threads:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        # After an interrupt, or where nobody wants the other results, what has begun stops.
+        stop.set()
+        pool.shutdown(wait=False, cancel_futures=True)
