@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import pickle
+import shutil
 from pathlib import Path
 
 import neurotess as nt
@@ -15,6 +17,106 @@ pandas = pytest.importorskip("pandas")
 @pytest.fixture(scope="module")
 def circuit(circuit_folder: Path) -> nt.Circuit:
     return nt.Circuit(circuit_folder)
+
+
+@pytest.fixture(scope="module")
+def two(circuit_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> nt.Circuit:
+    """The same cells in two populations: the second has them 1000 µm aside."""
+    h5py = pytest.importorskip("h5py")
+    folder = tmp_path_factory.mktemp("two") / "circuit"
+    shutil.copytree(circuit_folder, folder)
+    with h5py.File(folder / "nodes.h5", "a") as file:
+        [name] = file["nodes"]
+        file.copy(f"nodes/{name}", file["nodes"], "other")
+        file["nodes/other/0/x"][:] += 1000
+    config = json.loads((folder / "circuit_config.json").read_text())
+    populations = config["networks"]["nodes"][0]["populations"]
+    populations["other"] = next(iter(populations.values()))
+    (folder / "circuit_config.json").write_text(json.dumps(config))
+    return nt.Circuit(folder)
+
+
+def test_ids_of_several_populations_are_told_apart(two: nt.Circuit) -> None:
+    first, second = two.populations
+    frame = two.nodes[(two.nodes.population == second) & (two.nodes.node_id < 3)]
+    pairs = [(second, 0), (second, 1), (second, 2)]
+    for nodes, population in [(frame, None), (pairs, None), ([0, 1, 2], second), ("0-2", second), (frame.node_id, second)]:
+        selected = two.select(nodes, population=population)
+        assert selected.population.tolist() == [second] * 3 and selected.node_id.tolist() == [0, 1, 2]
+    both = two.select([(first, 5), (second, 7)])
+    assert both.population.tolist() == [first, second] and both.node_id.tolist() == [5, 7]
+    assert len(two.select(frame, population=first)) == 0
+    for ambiguous in (frame.node_id, [0], "0", np.array([0, 1])):
+        for use in (two.select, two.mesh, lambda nodes: nt.render(two, nodes=nodes, size=(16, 16))):
+            with pytest.raises(ValueError, match=f"several populations have a node 0 .{first}, {second}.: give population="):
+                use(ambiguous)
+    with pytest.raises(ValueError, match="several populations"):
+        two.morphology(3)
+    with pytest.raises(KeyError, match="no node 99 in 'other'"):
+        two.select([0, 99], population=second)
+    with pytest.raises(KeyError, match="no node -1"):
+        two.select([-1], population=second)
+    with pytest.raises(ValueError, match="no population 'third'"):
+        two.select([("third", 0)])
+    with pytest.raises(ValueError, match="0.5 is no id"):
+        two.select([0.5], population=second)  # type: ignore[list-item]
+    with pytest.raises(ValueError, match="the column 'node_id'"):
+        two.select(frame[["x", "y"]])
+
+
+def test_meshes_and_pictures_are_of_the_population_that_is_meant(two: nt.Circuit, can_draw: bool) -> None:
+    first, second = two.populations
+    made = list(two.mesh([(second, 4), (first, 4)], level=1))
+    assert [(one.population, one.node_id) for one in made] == [(first, 4), (second, 4)]
+    meshes = [one.mesh for one in made if one.mesh is not None]
+    assert meshes[1].vertices[:, 0] == pytest.approx(meshes[0].vertices[:, 0] + 1000, abs=1e-2)
+    assert (meshes[1].point_index == meshes[0].point_index).all()
+    here, there = ({"nodes": [(name, 4)], "size": (64, 48), "samples": 1, "legend": False} for name in (first, second))
+    # The camera fits what is drawn, so a cell alone looks alike wherever it is.
+    assert (np.asarray(nt.render(two, **here)) == np.asarray(nt.render(two, **there))).mean() > 0.98
+    frame = two.nodes[two.nodes.node_id == 4]
+    apart = np.asarray(nt.render(two, **{**here, "nodes": frame}))
+    assert (apart != np.asarray(nt.render(two, **here))).any()
+    region = ((900.0, -1e6, -1e6), (2000.0, 1e6, 1e6))
+    within = np.asarray(nt.render(two, **{**here, "nodes": frame, "region": region}))
+    assert (within == np.asarray(nt.render(two, **there))).all()
+
+
+def test_sections_of_reports_are_those_of_meshes(circuit: nt.Circuit) -> None:
+    name = next(name for name, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
+    report, differ = circuit.report(name), 0
+    for node in report.node_ids.tolist()[:4]:
+        [one] = circuit.mesh([node], level=1)
+        mesh, table = one.mesh, report.compartments(node)
+        assert mesh is not None and mesh.cell is not None
+        sections = [(0, None), *((section.id + 1, section.type) for section in mesh.cell.sections)]
+        # NEURON's order: the axon, basal dendrites, apical ones, the rest.
+        order = sorted(sections[1:], key=lambda pair: (min(int(pair[1] or 0), 5), pair[0]))
+        assert table.section.tolist() == [[0, *(number for number, _ in order)][n] for n in table.neuron_section]
+        assert [s.neuron_section for s in mesh.cell.sections] == [1 + [n for n, _ in order].index(k) for k, _ in sections[1:]]
+        differ += int((table.section != table.neuron_section).sum())
+        rows = mesh.compartments(report, node)
+        assert rows.min() >= 0 and (table.section.to_numpy()[rows] == mesh.section).all()
+        assert report.at(report.times[0], node)[rows].shape == (len(mesh.vertices),)
+        alone = nt.Report(report.path)
+        assert list(alone.compartments(node).columns) == ["along", "neuron_section"]
+        assert alone.compartments(node, cell=mesh.cell).equals(table)
+        assert (mesh.compartments(alone, node) == rows).all()
+    assert differ > 0
+    with pytest.raises(ValueError, match="it is not of this cell"):
+        circuit.report(name).compartments(int(report.node_ids[0]), cell=nt.read(b"1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n"))
+    assert pickle.loads(pickle.dumps(report)).compartments(0).equals(report.compartments(0))
+
+
+def test_places_between_compartments_have_the_nearest(circuit: nt.Circuit) -> None:
+    from neurotess._places import nearest_compartments
+
+    section, along = np.array([0, 2, 2, 1]), np.array([0.5, 0.25, 0.75, 0.5])
+    places = [(0, 0.5), (1, 0.0), (1, 1.0), (2, 0.0), (2, 0.49), (2, 0.51), (2, 1.0), (3, 0.0)]
+    found = nearest_compartments(section, along, *map(np.array, zip(*places, strict=True)))
+    assert found.tolist() == [0, 3, 3, 1, 1, 2, 2, -1]
+    nothing = nearest_compartments(section[:0], along[:0], np.array([1]), np.array([0.5]))
+    assert nothing.tolist() == [-1]
 
 
 def test_nodes_are_a_table(circuit: nt.Circuit) -> None:

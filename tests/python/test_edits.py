@@ -110,19 +110,20 @@ def test_a_unit_that_was_dealt_with_is_not_warned_of() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"scale": 0}, "'0' for 'scale'"),
+        ({"scale": 0}, "scale=0: a number above 0"),
         ({"scale": 2, "units": "nm"}, "'scale.* cannot be used with 'units"),
-        ({"units": (1, 2)}, "um, nm or voxel"),
-        ({"mend_radii": 0.5}, "a number above 1"),
-        ({"rotate": {"w": 3}}, "an axis and degrees"),
-        ({"mirror": "xy"}, "x, y or z"),
+        ({"units": (1, 2)}, r"units=\(1, 2\): 'um', 'nm' or the sides of a voxel"),
+        ({"mend_radii": 0.5}, "mend_radii=0.5: a number above 1"),
+        ({"rotate": {"w": 3}}, r"rotate=\{'w': 3\}: an axis and degrees"),
+        ({"mirror": "xy"}, "mirror='xy': 'x', 'y' or 'z'"),
         ({"subtree": 77}, "no sample has the number 77"),
         ({"cut": [77, 5, 78]}, "no samples have the numbers 77, 78"),
-        ({"drop_types": ["axon", "branch"]}, "'branch' for 'drop.types'"),
-        ({"within": 0}, "'0' for 'within'"),
+        ({"drop_types": ["axon", "branch"]}, r"drop_types=\['axon', 'branch'\]: use axon"),
+        ({"within": 0}, "within=0: a number above 0"),
+        ({"cut": "x"}, "cut='x': a whole number is needed"),
         ({"reroot": 6}, "in a tree with a soma"),
         ({"resample": 1e-9}, "take a larger one"),
-        ({"types": {"branch": 3}}, "'branch=3' for 'types'"),
+        ({"types": {"branch": 3}}, r"types=\{'branch': 3\}: use axon"),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
@@ -182,6 +183,12 @@ def test_differences_are_those_of_the_command(cell: nt.Morphology, tmp_path: Pat
     assert ours["moved"] == {"count": 1, "largest": pytest.approx(0.5), "samples": [4]}
     assert ours["retyped"][0]["count"] == 1
     assert nt.diff(cell, cell)["same"] and nt.diff(cell, nt.edit(cell, scale=1.00001))["same"]
+    assert nt.diff(cell, nt.edit(cell, scale=2), samples=2)["moved"]["samples"] == [2, 3]
+    grown = nt.synth("granule", points=100)
+    moved = nt.diff(grown, nt.edit(grown, scale=2))["moved"]
+    assert moved["samples"] == grown.samples.tolist() and len(moved["samples"]) == moved["count"] == 100
+    with pytest.raises(ValueError, match="samples=-1"):
+        nt.diff(cell, cell, samples=-1)
     for tolerance in (-1, math.nan, math.inf):
         with pytest.raises(ValueError, match="tolerance"):
             nt.diff(cell, cell, tolerance=tolerance)

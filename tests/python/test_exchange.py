@@ -133,3 +133,12 @@ def test_packages_that_are_missing_are_named() -> None:
 
     with pytest.raises(ImportError, match="pip install 'neurotess\\[view\\]'"):
         needed("no_such_package", "view")
+
+
+def test_packages_are_named_as_pip_knows_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    picture = nt.Image(np.zeros((2, 3, 4), np.uint8))
+    with pytest.raises(ImportError, match="pip install pillow"):
+        picture.to_pillow()

@@ -78,16 +78,16 @@ def test_options_are_those_of_the_command(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"level": 99}, "'99' for 'level': 99 is not in 0..=64"),
-        ({"level": -1}, "-1 is not in 0..=64"),
+        ({"level": 99}, "level=99: a whole number from 0 to 64 is needed"),
+        ({"level": -1}, "level=-1: a whole number from 0 to 64"),
         ({"level": 4, "max_error": 0.1}, "'level' cannot be used with 'max_error'"),
         ({"max_edge": 2.0}, "max_edge, min_edge and max_aspect are for isotropic"),
-        ({"soma": "cube"}, "'soma' .possible values: fem, sphere, profile, none."),
-        ({"poisson": 0.5}, "'poisson'"),
-        ({"ring": {0: 1.0}}, "neurite from 1 on"),
+        ({"soma": "cube"}, "soma='cube': use 'fem', 'sphere', 'profile' or 'none'"),
+        ({"poisson": 0.5}, "poisson=0.5: a number"),
+        ({"ring": {0: 1.0}}, r"ring=\{0: 1.0\}: neurites from 1 on"),
         ({"types": ["branch"]}, "use axon, basal"),
         ({"quads": True, "crossings": "merge"}, "quads or crossings"),
-        ({"level": "many"}, "'many' for 'level'"),
+        ({"level": "many"}, "level='many': a whole number is needed"),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
@@ -115,6 +115,8 @@ def test_no_option_of_the_command_is_missing() -> None:
     drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color", "saved_view"}
     # In Python several meshes are one list.
     drawing |= {"mesh", "meshes"}
+    # The command has no numbers of one's own.
+    drawing |= {"values", "title", "unit"}
     for command, function, other in [
         ("mesh", nt.mesh, files | circuit),
         ("render", nt.render, drawing),

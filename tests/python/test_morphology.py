@@ -120,9 +120,11 @@ def test_warnings_are_warned_of_and_are_data() -> None:
 def test_cells_without_points_work() -> None:
     cell = nt.read(b"1 1 0 0 0 5 -1\n")
     assert cell.points.shape == (0, 3) and cell.parents.shape == (0,)
-    assert cell.sections == [] and cell.neurites == []
+    assert cell.sections == () and cell.neurites == ()
     assert cell.measures()["n_points"] == 0
-    assert nt.mesh(cell).closed
+    mesh = nt.mesh(cell)
+    assert mesh.closed and (mesh.point_index == -1).all() and (mesh.sample_index == 0).all()
+    assert mesh.path_distance == pytest.approx(5, rel=0.1)
 
 
 def test_tables_of_any_kind_give_the_same_cell(cell: nt.Morphology) -> None:

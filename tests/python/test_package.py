@@ -59,7 +59,10 @@ def test_everything_is_documented(name: str) -> None:
         assert bare == []
 
 
-@pytest.mark.parametrize("module", ["_morphology", "_edits", "_meshes", "_circuits", "_pictures", "plot", "dask"])
+DOCUMENTED = ["_morphology", "_edits", "_meshes", "_meshing", "_circuits", "_reports", "_pictures", "plot", "dask"]
+
+
+@pytest.mark.parametrize("module", DOCUMENTED)
 def test_examples_of_the_documentation_hold(module: str) -> None:
     failed, _ = doctest.testmod(importlib.import_module(f"neurotess.{module}"))
     assert failed == 0

@@ -97,6 +97,8 @@ def test_films_go_around_and_through_time(cell: nt.Morphology, circuit_folder: P
     assert len(list(nt.film(circuit, time=(times[0], times[4], times[1] - times[0]), **options))) == 4
     with pytest.raises(ValueError, match="turntable=True, or time"):
         nt.film(cell)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'legends': did you mean 'legend'"):
+        nt.film(cell, turntable=True, legends=False)
 
 
 def test_notebooks_and_files_get_png(cell: nt.Morphology, tmp_path: Path) -> None:
@@ -115,15 +117,25 @@ def test_notebooks_and_files_get_png(cell: nt.Morphology, tmp_path: Path) -> Non
 
 def test_wrong_options_are_value_errors(cell: nt.Morphology) -> None:
     for options, message in [
-        ({"color_by": "mood"}, "'color_by'"),
-        ({"size": (0, 10)}, "'size'"),
-        ({"eye": (0, 0, 0)}, "target"),
+        ({"color_by": "mood"}, "color_by='mood': use 'type', 'neurite', .* or 'value'"),
+        ({"size": (0, 10)}, r"size=\(0, 10\): a width and a height of 1 to 32768 pixels"),
+        ({"samples": "many"}, "samples='many': a whole number is needed"),
+        ({"samples": 100}, "samples=100: a whole number from 1 to 64 is needed"),
+        ({"fov": "wide"}, "fov='wide': a number is needed"),
+        ({"axes": "x"}, "axes='x': True or False is needed"),
+        ({"ao": -1}, "ao=-1: True or a radius"),
+        ({"eye": (0, 0, 0)}, "eye= needs target=, too"),
+        ({"time": 3}, "time= needs report=, too"),
         ({"eye": (0, 0, 0), "target": (0, 0, 0)}, "eye"),
         ({"color_by_attribute": "layer"}, "needs a circuit"),
         ({"report": "x.h5"}, "needs a circuit"),
-        ({"range": (3, 1), "color_by": "radius"}, "'range'"),
+        ({"range": (3, 1), "color_by": "radius"}, r"range=\(3, 1\): two numbers are needed, the lower first"),
     ]:
-        with pytest.raises(ValueError, match=message):
+        with pytest.raises(ValueError, match=message) as caught:
+            nt.render(cell, **options)  # type: ignore[arg-type]
+        assert "--" not in str(caught.value)
+    for options in ({"palette": "none.toml"}, {"points": "none.csv"}, {"meshes": "none.ply"}):
+        with pytest.raises(nt.MissingFileError, match="none.*there is no such file"):
             nt.render(cell, **options)  # type: ignore[arg-type]
 
 
@@ -164,7 +176,12 @@ def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
     view.handle_event({"type": "pointer_up", "x": x, "y": y, "buttons": ()})
     [told] = picked
     assert isinstance(told, dict) and told["name"] == cell.name
-    assert told["section"] is None or told["section"] < len(cell.sections)
+    section, sample = told["section_index"], told["sample"]
+    assert told["section"] == section + 1
+    if section >= 0:
+        of_section = cell.samples[cell.sections[section].indices].tolist()
+        parent = cell.parents[cell.sections[section].indices.start]
+        assert sample in [*of_section, *cell.samples[[parent]].tolist()]
     assert view.pick(0, 0) is None
 
     view.handle_event({"type": "pointer_down", "x": 10, "y": 10, "buttons": (1,)})
@@ -186,6 +203,10 @@ def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
     view.orthographic = False
     assert (np.asarray(view.image()) == whole).all()
 
+    with pytest.raises(AttributeError, match="no 'colour_by': did you mean 'color_by'"):
+        view.colour_by = "radius"
+    with pytest.raises(TypeError, match="unexpected keyword argument 'colour_by': did you mean 'color_by'"):
+        nt.View(cell, colour_by="radius")
     view.color_by = "radius"
     assert (np.asarray(view.image()) != whole).any()
     with pytest.raises(ValueError, match="color_by"):
@@ -251,5 +272,5 @@ def test_meshes_are_drawn_from_files_and_from_memory(cell: nt.Morphology, tmp_pa
         nt.render(cell, meshes=[{"mesh": file, "opacity": 7}], **SMALL)
     with pytest.raises(ValueError, match="names no mesh"):
         nt.render(cell, meshes=[{"color": "red"}], **SMALL)
-    with pytest.raises(nt.RenderError, match=r"none\.obj"):
+    with pytest.raises(FileNotFoundError, match=r"none\.obj"):
         nt.render(cell, meshes=["none.obj"], **SMALL)

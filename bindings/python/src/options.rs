@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 
 use neurotess::recipe::{MeshOptions, NamedOptions, OptionValue, OptionsError, Spelling};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyMapping, PyString};
+
+use crate::errors;
 
 /// The options of these keywords; what is None has its default.
 ///
 /// # Errors
 /// `ValueError` for what is wrong with an option, `TypeError` for what is no value at all.
 pub(crate) fn mesh_options(keywords: &Bound<'_, PyDict>) -> PyResult<MeshOptions> {
-    let wrong = |error: OptionsError| PyValueError::new_err(error.told(Spelling::Keyword));
+    let py = keywords.py();
+    let wrong = |error: OptionsError| errors::option(py, &error.told(Spelling::Keyword));
     let mut named = NamedOptions::default();
     for (keyword, value) in keywords {
         if let Some(value) = option_value(&value)? {

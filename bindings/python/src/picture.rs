@@ -9,10 +9,12 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
+use neurotess::circuit::NodeRef;
+use neurotess::coloring::{CellValues, OwnValues};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingInput};
 use numpy::ndarray::Array3;
-use numpy::{PyArray3, PyReadonlyArray3};
+use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -62,25 +64,51 @@ pub(crate) struct Drawing {
 /// perspective.
 type View = ([f64; 3], [f64; 3], [f64; 3], f64, bool);
 
+/// By cell the numbers of its points and that of its somata; what they are, and their unit.
+type GivenValues<'py> = (Vec<(PyReadonlyArray1<'py, f32>, f32)>, String, String);
+
+fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnValues> {
+    let of_cell = |(points, soma): &(PyReadonlyArray1<'_, f32>, f32)| {
+        Ok(CellValues {
+            points: points.as_slice()?.to_vec(),
+            soma: *soma,
+        })
+    };
+    let cells: PyResult<_> = cells.iter().map(of_cell).collect();
+    Ok(OwnValues {
+        cells: cells?,
+        title,
+        unit,
+    })
+}
+
 #[pymethods]
 impl Drawing {
     #[new]
     fn new(
         py: Python<'_>,
         cells: Vec<PyRef<'_, Cell>>,
-        circuit: Option<PathBuf>,
+        circuit: Option<(PathBuf, Option<Vec<(u32, u32)>>)>,
         options: Vec<String>,
+        values: Option<GivenValues<'_>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
+        let values = values.map(own_values).transpose()?;
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
         let made = stoppable(py, None, &Stop::default(), move |stopped| {
             let gpu = device(adapter)?;
             let named: Vec<_> = cells.iter().map(|c| (c.name.as_str(), &**c)).collect();
+            let nodes = circuit.as_ref().and_then(|(_, nodes)| nodes.as_ref());
+            let nodes: Option<Vec<NodeRef>> = nodes.map(|nodes| {
+                let of = |&(population, row): &(u32, u32)| NodeRef { population, row };
+                nodes.iter().map(of).collect()
+            });
             let input = match &circuit {
-                Some(path) => DrawingInput::Circuit(path),
+                Some((path, _)) => DrawingInput::Circuit(path, nodes.as_deref()),
                 None => DrawingInput::Cells(&named),
             };
-            let (drawing, messages) = embed::Drawing::new(&gpu, input, options, stopped)?;
+            let (drawing, messages) =
+                embed::Drawing::new(&gpu, input, options, values.as_ref(), stopped)?;
             Ok((gpu, drawing, messages))
         })?;
         let (gpu, drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
@@ -148,7 +176,10 @@ impl Drawing {
         told.set_item("cell", picked.cell)?;
         told.set_item("name", picked.name)?;
         told.set_item("node_id", picked.node)?;
-        told.set_item("section", picked.section.map(|section| section.0))?;
+        // As in meshes: 0 is the soma.
+        let section = picked.section.map_or(0, |section| section.0 + 1);
+        told.set_item("section", section)?;
+        told.set_item("section_index", i64::from(section) - 1)?;
         told.set_item("sample", picked.sample)?;
         told.set_item("position", picked.position.to_array())?;
         Ok(Some(told))

@@ -11,6 +11,8 @@ pub struct Selection {
     pub population: Option<String>,
     /// Only nodes with these ids: ranges, both ends included.
     pub ids: Option<Vec<(u64, u64)>>,
+    /// Only these nodes, in any order.
+    pub nodes: Option<Vec<NodeRef>>,
     /// Only nodes of the node set of this name.
     pub node_set: Option<String>,
     /// Only nodes with their place in this box (µm; both corners included).
@@ -45,6 +47,11 @@ impl Circuit {
             ranges.sort_unstable();
             ranges
         });
+        let listed = selection.nodes.as_ref().map(|nodes| {
+            let mut nodes = nodes.clone();
+            nodes.sort_unstable();
+            nodes
+        });
         nodes.retain(|node| {
             let population = &self.populations[node.population as usize];
             let row = node.row as usize;
@@ -53,7 +60,9 @@ impl Circuit {
                 let id = population.ids[row];
                 ranges.iter().any(|&(from, to)| (from..=to).contains(&id))
             });
+            let is_listed = |nodes: &Vec<NodeRef>| nodes.binary_search(node).is_ok();
             id_holds
+                && listed.as_ref().is_none_or(is_listed)
                 && named.is_none_or(|name| population.name == *name)
                 && selection.region.is_none_or(|(min, max)| {
                     let place = population.positions[row];

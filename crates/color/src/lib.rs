@@ -23,6 +23,7 @@ mod film;
 mod markers;
 mod meshes;
 mod own_colors;
+mod own_values;
 mod palette_file;
 mod path_distance;
 #[cfg(feature = "circuit")]
@@ -50,6 +51,7 @@ pub use markers::{
 };
 pub use meshes::mesh_color;
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
+pub use own_values::{CellValues, OwnValues, by_values};
 pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;
 #[cfg(feature = "circuit")]

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::edit::BeforeAfter;
 use crate::{LengthByType, Measures, Morphology, NeuriteKind, Soma};
 
-/// Number of samples that are named of each kind of difference.
+/// Number of samples that are named of each kind of difference, if nothing is said.
 const NAMED: usize = 10;
 
 /// How samples were matched.
@@ -37,7 +37,7 @@ pub struct Differing {
     /// By how much at most (µm), where it is a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest: Option<f64>,
-    /// The first ten, by their numbers in the first tracing, or in the second one if only that has them.
+    /// The first ten (or as many as were asked for), by their numbers in the first tracing, or in the second one if only that has them.
     pub samples: Vec<i64>,
 }
 
@@ -111,6 +111,11 @@ impl Difference {
     /// Compares two tracings. `tolerance` (µm, 0 or more): distances and differences of radii up to it are
     /// none; coordinates are taken in the files' frames.
     pub fn of(first: &Morphology, second: &Morphology, tolerance: f64) -> Self {
+        Self::naming(first, second, tolerance, NAMED)
+    }
+
+    /// [`of`](Self::of) with so many samples of each kind of difference.
+    pub fn naming(first: &Morphology, second: &Morphology, tolerance: f64, named: usize) -> Self {
         let (a, b) = (Samples::of(first), Samples::of(second));
         let (matched_by, partner) = a.matched(&b, tolerance);
         let counts = [first, second].map(Measures::of);
@@ -146,14 +151,17 @@ impl Difference {
         };
         difference.compare(&a, &b, &partner);
         let found = [
-            &difference.only_in_first,
-            &difference.only_in_second,
-            &difference.moved,
-            &difference.radii,
-            &difference.types,
-            &difference.parents,
+            &mut difference.only_in_first,
+            &mut difference.only_in_second,
+            &mut difference.moved,
+            &mut difference.radii,
+            &mut difference.types,
+            &mut difference.parents,
         ];
         difference.same = found.iter().all(|d| d.count == 0) && difference.soma.is_none();
+        for differing in found {
+            differing.samples.truncate(named);
+        }
         difference
     }
 
@@ -201,9 +209,7 @@ impl Difference {
 impl Differing {
     fn add(&mut self, sample: i64) {
         self.count += 1;
-        if self.samples.len() < NAMED {
-            self.samples.push(sample);
-        }
+        self.samples.push(sample);
     }
 
     fn add_length(&mut self, sample: i64, length: f64) {

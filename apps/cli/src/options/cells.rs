@@ -28,6 +28,9 @@ pub(crate) struct CellArgs {
     /// Only cells with their soma in this box: X,Y,Z,X,Y,Z of two corners (µm)
     #[arg(long, value_name = "BOX", value_parser = region, allow_hyphen_values = true)]
     region: Option<Region>,
+    /// Only these cells: of programs that hold the circuit in memory.
+    #[arg(skip)]
+    listed: Option<Vec<NodeRef>>,
 }
 
 /// Ranges of ids, both ends included.
@@ -48,11 +51,17 @@ impl CellArgs {
         chosen != Self::default()
     }
 
+    /// Selects these cells alone.
+    pub(crate) fn list(&mut self, nodes: &[NodeRef]) {
+        self.listed = Some(nodes.to_vec());
+    }
+
     /// The selected cells.
     pub(crate) fn select(&self, circuit: &Circuit) -> Result<Vec<NodeRef>, Failure> {
         let selection = Selection {
             population: self.population.clone(),
             ids: self.nodes.as_ref().map(|ids| ids.0.clone()),
+            nodes: self.listed.clone(),
             node_set: self.node_set.clone(),
             region: self.region.map(|Region(min, max)| (min, max)),
             sample: self.sample.map(|count| (count, self.sample_seed)),

@@ -28,12 +28,17 @@ import os
 
 from ._neurotess import __version__
 from ._errors import (
+    FolderError,
+    ForbiddenFileError,
     MeshError,
+    MissingFileError,
     NeurotessError,
     NeurotessWarning,
+    OptionError,
     ReadError,
     ReadWarning,
     RenderError,
+    UnreadableFileError,
 )
 from ._morphology import Morphology, read, synth
 from ._parts import Neurite, Notice, Section, Soma
@@ -53,21 +58,26 @@ if TYPE_CHECKING:
 # Without what needs other packages: `from neurotess import *` works everywhere.
 __all__ = [
     "Circuit",
+    "FolderError",
+    "ForbiddenFileError",
     "Image",
     "Mesh",
     "MeshError",
     "MeshResult",
+    "MissingFileError",
     "Morphology",
     "Neurite",
     "NeurotessError",
     "NeurotessWarning",
     "Notice",
+    "OptionError",
     "ReadError",
     "ReadWarning",
     "RenderError",
     "Report",
     "Section",
     "Soma",
+    "UnreadableFileError",
     "__version__",
     "check",
     "diff",

@@ -11,9 +11,11 @@ from ._meshes import Mesh
 from ._meshing import Outcome, _of
 from ._morphology import Morphology, _with_warnings
 from ._parts import Notice
+from ._nodes import rows_of
 from ._packages import needed
-from ._pictures import DrawnCircuit, Image, render
+from ._pictures import Image, render
 from ._reports import Report
+from ._scene import DrawnCircuit
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._meshing import MeshOptions
+    from ._nodes import Nodes
 
 
 class Circuit(DrawnCircuit):
@@ -107,7 +110,7 @@ class Circuit(DrawnCircuit):
 
     def select(
         self,
-        nodes: Iterable[int] | None = None,
+        nodes: Nodes | None = None,
         *,
         node_set: str | None = None,
         population: str | None = None,
@@ -117,7 +120,9 @@ class Circuit(DrawnCircuit):
     ) -> pd.DataFrame:
         """Rows of `nodes` that are selected; the options narrow each other down.
 
-        `nodes` are ids, `region` two corners (µm) of a box that has the somata, and `sample` a number of cells at
+        `nodes` are rows of such a table, pairs of a population and an id, or ids, if only one population has them or
+        `population` says which (``"0,5,10-19"`` are ids, too). An id that several populations have is a ``ValueError``,
+        and one that is not there a ``KeyError``. `region` are two corners (µm) of a box that has the somata, and `sample` a number of cells at
         random, the same for the same seed.
         """
         rows = self._rows(nodes, node_set, population, region, sample, sample_seed)
@@ -128,28 +133,23 @@ class Circuit(DrawnCircuit):
 
     def _rows(
         self,
-        nodes: Iterable[int] | None,
+        nodes: Nodes | None,
         node_set: str | None,
         population: str | None,
         region: tuple[Iterable[float], Iterable[float]] | None,
         sample: int | None,
         sample_seed: int,
     ) -> list[tuple[int, int]]:
-        ids = None if nodes is None else [int(_options.word(node)) for node in nodes]
+        named = None if nodes is None else rows_of(self._circuit, nodes, population)
         box = None
         if region is not None:
             low, high = region
             box = ([float(n) for n in low], [float(n) for n in high])
-        found = self._circuit.select(ids, node_set, population, box, sample, sample_seed)
+        found = self._circuit.select(named, node_set, population, box, sample, sample_seed)
         return list(zip(found[0].tolist(), found[1].tolist(), strict=True))
 
     def _row(self, node: int, population: str | None) -> tuple[int, int]:
-        rows = self._rows([node], None, population, None, None, 1)
-        if not rows:
-            raise KeyError(f"no node {node}" + (f" in {population!r}" if population else ""))
-        if len(rows) > 1 and population is None and len({p for p, _ in rows}) > 1:
-            raise ValueError(f"several populations have a node {node}: say which population")
-        return rows[0]
+        return rows_of(self._circuit, [node], population)[0]
 
     @property
     def edges(self) -> pd.DataFrame:
@@ -192,10 +192,12 @@ class Circuit(DrawnCircuit):
 
     def placement(self, node: int, *, population: str | None = None) -> NDArray[np.float64]:
         """The matrix (4, 4) from the coordinates of a node's morphology to those of the circuit (µm)."""
+        return self._matrix(*self._row(node, population))
+
+    def _matrix(self, population: int, row: int) -> NDArray[np.float64]:
         import numpy as np
 
-        p, row = self._row(node, population)
-        return np.array([*self._circuit.placement(p, row), [0.0, 0.0, 0.0, 1.0]])
+        return np.array([*self._circuit.placement(population, row), [0.0, 0.0, 0.0, 1.0]])
 
     def inputs(self, node: int, *, population: str | None = None) -> NDArray[np.float64]:
         """Places of the synapses that a node gets, of all edges, in the coordinates of its morphology (µm), (n, 3).
@@ -207,7 +209,7 @@ class Circuit(DrawnCircuit):
 
     def mesh(
         self,
-        nodes: Iterable[int] | None = None,
+        nodes: Nodes | None = None,
         *,
         node_set: str | None = None,
         population: str | None = None,
@@ -222,7 +224,7 @@ class Circuit(DrawnCircuit):
         What selects cells is that of `select`. An error is a value, as in `mesh_many`. Nodes that share a
         morphology share its coarse mesh.
         """
-        recipe = _neurotess.Recipe(dict(options))
+        recipe = _options.recipe(options)
         rows = self._rows(nodes, node_set, population, region, sample, sample_seed)
         return self._meshes(rows, recipe, threads)
 
@@ -235,9 +237,10 @@ class Circuit(DrawnCircuit):
         for p, row in rows:
             node = int(ids[p][row])
             try:
-                surface, report = mesher.mesh(p, row, threads)
+                surface, report, cell = mesher.mesh(p, row, threads)
                 read: list[Notice] = []
-                mesh = _of(surface, report, read, f"{names[p]}_{node}")
+                placement = self._matrix(p, row)
+                mesh = _of(surface, report, read, f"{names[p]}_{node}", Morphology(cell), placement)
                 yield NodeMesh(names[p], node, mesh, None)
             except Exception as error:
                 yield NodeMesh(names[p], node, None, error)
@@ -246,7 +249,7 @@ class Circuit(DrawnCircuit):
 
     def report(self, name: str | os.PathLike[str]) -> Report:
         """A report or a file of spikes: one that the configuration names, or a file."""
-        return Report(self.reports.get(os.fspath(name), os.fspath(name)))
+        return Report(self.reports.get(os.fspath(name), os.fspath(name)), circuit=self)
 
     def render(self, **options: Any) -> Image:
         """A picture of the circuit: `neurotess.render` with this circuit.

@@ -6,7 +6,9 @@ import os
 from collections.abc import Mapping
 
 from . import _neurotess, _options
+from ._errors import OptionError, missing_file
 from ._morphology import Morphology, _read, _warn, read
+from ._words import with_given
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -88,6 +90,7 @@ def edit(
     >>> [edit["edit"] for edit in light.edits]
     ['simplify', 'recenter']
     """
+    given = dict(locals())
     pairs = rotate.items() if isinstance(rotate, Mapping) else rotate or ()
     words = _words("types", [_join(types.items(), ",")] if types else ())
     words += _options.arguments({"scale": scale})
@@ -109,13 +112,18 @@ def edit(
     synapses = None
     if spines is not None:
         places, *seed = spines if isinstance(spines, tuple) else (spines,)
+        if isinstance(places, (str, os.PathLike)) and places != "file" and not os.path.exists(places):
+            raise missing_file(os.fspath(places))
         if hasattr(places, "__len__") and not isinstance(places, (str, os.PathLike)):
             places, synapses = "synapses", _places(places)
         words += _words("spines", [",".join(map(_options.word, (places, *seed)))])
     words += _options.arguments({"recenter": recenter})
     words += _words("rotate", [_join([pair], "") for pair in pairs])
     words += _words("mirror", _several(mirror))
-    edits = _neurotess.Edits(words)
+    try:
+        edits = _neurotess.Edits(words)
+    except OptionError as error:
+        raise with_given(error, given) from None
     if isinstance(cell, Morphology):
         read = cell._cell
     else:
@@ -157,13 +165,15 @@ def _several(values: Any) -> Iterable[object]:
     return (values,) if isinstance(values, str) or not hasattr(values, "__iter__") else values
 
 
-def diff(first: Source, second: Source, *, tolerance: float = 0.001) -> dict[str, Any]:
+def diff(
+    first: Source, second: Source, *, tolerance: float = 0.001, samples: int | None = None
+) -> dict[str, Any]:
     """What differs between two cells or files, under the names of ``neurotess diff --json``.
 
     The keys are ``same``, ``matched_by``, ``samples``, ``sections``, ``neurites``, ``forks``, ``ends``, ``length``
     and ``length_by_type`` (each with ``before``, the first cell, and ``after``, the second); ``only_in_first``,
     ``only_in_second``, ``moved``, ``radii``, ``types`` and ``parents`` (each with ``count``, ``largest`` in µm where
-    it is a length, and the numbers of the first ten ``samples``); ``retyped`` and ``soma``. Distances and differences
+    it is a length, and the numbers of the ``samples``: all, or the first `samples` of them); ``retyped`` and ``soma``. Distances and differences
     of radii up to `tolerance` (µm) are none.
 
     >>> import neurotess as nt
@@ -174,5 +184,7 @@ def diff(first: Source, second: Source, *, tolerance: float = 0.001) -> dict[str
     >>> moved["count"], moved["largest"] > 10
     (200, True)
     """
+    if samples is not None and samples < 0:
+        raise ValueError(f"samples={samples} is not 0 or more")
     cells = [cell if isinstance(cell, Morphology) else read(cell) for cell in (first, second)]
-    return _neurotess.diff(cells[0]._cell, cells[1]._cell, float(tolerance))
+    return _neurotess.diff(cells[0]._cell, cells[1]._cell, float(tolerance), samples)

@@ -3,6 +3,13 @@
 from __future__ import annotations
 
 import errno
+import os
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    Unreadable = TypeVar("Unreadable", bound="UnreadableFileError")
 
 
 class NeurotessError(Exception):
@@ -12,8 +19,7 @@ class NeurotessError(Exception):
 class ReadError(NeurotessError):
     """A file that cannot be read.
 
-    A file that is not there is a ``FileNotFoundError`` too, and one that the system does not give is an
-    ``OSError``.
+    One that is not there is a `MissingFileError`, which is a ``FileNotFoundError``, too.
     """
 
     def __init__(self, file: str, line: int | None, message: str) -> None:
@@ -40,18 +46,38 @@ class ReadError(NeurotessError):
         return f"{place}: {self.message}"
 
 
-class _UnreadableFile(ReadError, OSError):
+class UnreadableFileError(ReadError, OSError):
+    """A file that the system does not give."""
+
     def __init__(self, file: str, line: int | None, message: str) -> None:
         super().__init__(file, line, message)
         self.filename = file
 
 
-class _MissingFile(_UnreadableFile, FileNotFoundError):
-    pass
+class MissingFileError(UnreadableFileError, FileNotFoundError):
+    """A file that is not there."""
 
 
-class _ForbiddenFile(_UnreadableFile, PermissionError):
-    pass
+class ForbiddenFileError(UnreadableFileError, PermissionError):
+    """A file that may not be read."""
+
+
+class FolderError(UnreadableFileError, IsADirectoryError):
+    """A folder where a file is needed."""
+
+
+class OptionError(NeurotessError, ValueError):
+    """An option that is wrong: its name, what was given, and what is possible."""
+
+    def __init__(self, message: str, option: str | None = None, needed: str = "") -> None:
+        super().__init__(message)
+        self.option: str | None = option
+        """The option, if it is about a single one."""
+        self.needed: str = needed
+        """What is possible."""
+
+    def __reduce__(self) -> tuple[type[OptionError], tuple[str, str | None, str]]:
+        return type(self), (str(self), self.option, self.needed)
 
 
 class MeshError(NeurotessError):
@@ -73,21 +99,37 @@ class ReadWarning(NeurotessWarning):
 def read_error(file: str, line: int | None, message: str, number: int | None) -> ReadError:
     """The exception for a file; `number` is the system's error, if there is one."""
     if number is None:
-        return ReadError(file, line, message)
-    kind: type[_UnreadableFile] = {
-        errno.ENOENT: _MissingFile,
-        errno.EACCES: _ForbiddenFile,
-    }.get(number, _UnreadableFile)
-    error = kind(file, line, message)
+        # Folders have no number of the system.
+        return folder(file) if line is None and os.path.isdir(file) else ReadError(file, line, message)
+    if number == errno.ENOENT:
+        return missing_file(file)
+    kind = ForbiddenFileError if number in (errno.EACCES, errno.EPERM) else UnreadableFileError
+    message = f"cannot be read ({os.strerror(number)}): check the path and its permissions"
+    return _numbered(kind(file, line, message), number)
+
+
+def missing_file(file: str) -> MissingFileError:
+    """The exception for a file that is not there."""
+    return _numbered(MissingFileError(file, None, "there is no such file: check the path"), errno.ENOENT)
+
+
+def folder(file: str) -> FolderError:
+    """The exception for a folder."""
+    told = "is a folder: neurotess.mesh_many takes one, neurotess.read a file or a list of them"
+    return _numbered(FolderError(file, None, told), errno.EISDIR)
+
+
+def _numbered(error: Unreadable, number: int) -> Unreadable:
     error.errno = number
     return error
 
 
-def option_error(message: str) -> ValueError:
+def option_error(message: str) -> OptionError:
     """The exception for an option, which the command line calls ``--max-error <E>``."""
-    import re
+    from ._words import told
 
-    def plain(name: re.Match[str]) -> str:
-        return name[1].replace("-", "_")
-
-    return ValueError(re.sub(r"--([a-z][a-z-]*)(?: <[^>]*>|\[=<[^>]*>\])?", plain, message))
+    option, given, needed = told(message)
+    if option is None:
+        return OptionError(needed)
+    shown = "" if option == "meshes" else f"={given!r}"
+    return OptionError(f"{option}{shown}: {needed}", option, needed)

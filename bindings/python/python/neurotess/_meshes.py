@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 from . import _neurotess
+from ._errors import NeurotessWarning
 from ._parts import Notice
 from ._packages import needed
 
@@ -14,6 +16,10 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+    from ._morphology import Morphology
+    from ._places import OnLines
+    from ._reports import Report
 
 
 class Mesh:
@@ -29,8 +35,16 @@ class Mesh:
         report: dict[str, Any] | None = None,
         notices: tuple[Notice, ...] = (),
         name: str = "mesh",
+        cell: Morphology | None = None,
+        placement: NDArray[np.float64] | None = None,
+        own: dict[str, NDArray[Any]] | None = None,
     ) -> None:
         self._surface = surface
+        self._own: dict[str, NDArray[Any]] = dict(own or {})
+        self.cell: Morphology | None = cell
+        """The cell that it was made of; none of files and of `from_arrays`, for which it can be set."""
+        self.placement: NDArray[np.float64] | None = placement
+        """The matrix (4, 4) from the cell's coordinates to the mesh's, where these are a circuit's."""
         self.name: str = name
         """Name for people: that of the cell or the file."""
         self.report: dict[str, Any] = report or {}
@@ -82,19 +96,133 @@ class Mesh:
         return self._surface.types
 
     @property
+    def sample(self) -> NDArray[np.int32]:
+        """The file's own number of the nearest sample, for each vertex; `Morphology.samples` has those of points."""
+        return self._surface.points
+
+    @property
     def point(self) -> NDArray[np.int32]:
-        """The file's own number of the nearest sample, for each vertex."""
+        """The same as `sample`, under the name that it has in files."""
         return self._surface.points
 
     @property
     def section(self) -> NDArray[np.int32]:
-        """Section of each vertex, counted from 1; 0 is the soma. ``cell.sections[i]`` has number i + 1."""
+        """Section of each vertex, counted from 1; 0 is the soma. `section_index` are indices of `Morphology.sections`."""
         return self._surface.sections
 
     @property
     def radius(self) -> NDArray[np.float32]:
         """Radius (µm) of the tracing at each vertex."""
         return self._surface.radii
+
+    # Its cell
+
+    @property
+    def section_index(self) -> NDArray[np.int64]:
+        """For each vertex the index of its section in ``cell.sections``; −1 on the soma."""
+        from ._places import section_index
+
+        return section_index(self.section)
+
+    @property
+    def point_index(self) -> NDArray[np.int64]:
+        """For each vertex the index of the nearest point in ``cell.points``; −1 on the soma.
+
+        >>> import neurotess as nt
+        >>> cell = nt.read(b"1 1 0 0 0 5 -1\\n20 3 0 9 0 1 1\\n30 3 0 30 0 1 20\\n")
+        >>> mesh = nt.mesh(cell, level=1)
+        >>> sorted(set(mesh.sample.tolist())), sorted(set(mesh.point_index.tolist()))
+        ([1, 20, 30], [-1, 0, 1])
+        """
+        from ._places import point_index
+
+        return point_index(self._traced(), self.sample, self.section)
+
+    @property
+    def sample_index(self) -> NDArray[np.int64]:
+        """For each vertex the row of the nearest sample in ``cell.to_table()``, which has those of somata, too."""
+        from ._places import sample_index
+
+        return sample_index(self._traced(), self.sample, self.point_index)
+
+    @property
+    def path_distance(self) -> NDArray[np.float64]:
+        """Length (µm) of the path along the tracing from the soma's center to each vertex, where it falls on the traced
+        line; straight on the soma itself. Without a soma, from where each tree begins."""
+        from ._places import path_distance
+
+        return path_distance(self._traced(), self._lines(), self._in_cell())
+
+    def compartments(self, report: Report, node: int) -> NDArray[np.int64]:
+        """For each vertex the nearest compartment of its section: the row of ``report.compartments(node)`` and the column
+        of ``report.values(node)``. −1 where the report has none of the section.
+
+        ``report.at(time, node)[mesh.compartments(report, node)]`` are the values of the vertices, if all have one.
+        """
+        from ._places import nearest_compartments
+
+        numbers, places = report._on(node)
+        sections = report._sections_of(numbers, self._traced())
+        return nearest_compartments(sections, places, self.section_index + 1, self._lines().along())
+
+    def _traced(self) -> Morphology:
+        if self.cell is None:
+            raise ValueError(f"{self.name} does not know its cell: set mesh.cell, as in mesh.cell = neurotess.read(…)")
+        return self.cell
+
+    def _in_cell(self) -> NDArray[np.float64]:
+        """Vertices in the cell's own coordinates."""
+        import numpy as np
+
+        if self.placement is None:
+            return self.vertices
+        back = np.linalg.inv(self.placement)
+        return np.asarray(self.vertices @ back[:3, :3].T + back[:3, 3])
+
+    def _lines(self) -> OnLines:
+        from ._places import OnLines
+
+        return OnLines(self._traced(), self._in_cell(), self.section_index, self.point_index)
+
+    # Numbers of one's own
+
+    @property
+    def attributes(self) -> dict[str, NDArray[Any]]:
+        """Attributes of vertices: ``type``, ``point``, ``section``, ``radius``, and your own."""
+        return {**self._built_in(), **self._own}
+
+    def with_attribute(self, name: str, values: ArrayLike) -> Mesh:
+        """A copy with numbers of your own for each vertex, (v,) or (v, n), which `to_trimesh` and `to_pyvista` hand over.
+
+        It shares all arrays with this mesh.
+
+        >>> import neurotess as nt
+        >>> mesh = nt.mesh(nt.synth("granule", points=100), level=1)
+        >>> far = mesh.with_attribute("distance", mesh.path_distance)
+        >>> bool((far.attributes["distance"] == mesh.path_distance).all())
+        True
+        """
+        import numpy as np
+
+        if name in self._built_in():
+            raise ValueError(f"name={name!r} is an attribute that every mesh has: choose another name")
+        column = np.array(values)
+        if column.ndim not in (1, 2) or len(column) != len(self.vertices):
+            raise ValueError(
+                f"values of {name!r} have shape {column.shape}: one for each of the {len(self.vertices)} vertices is needed"
+            )
+        if column.dtype.kind not in "fiub":
+            raise ValueError(f"values of {name!r} are not numbers, but {column.dtype}")
+        column.flags.writeable = False
+        return Mesh(
+            self._surface,
+            self.report,
+            tuple(self.warnings),
+            self.name,
+            self.cell,
+            self.placement,
+            {**self._own, name: column},
+        )
 
     def triangles(self) -> NDArray[np.uint32]:
         """All faces as triangles, (f, 3): quads are halved. Without quads it is `faces` itself."""
@@ -153,16 +281,23 @@ class Mesh:
         ``materials=True`` gives faces of a GLB or OBJ the colors of their types, of an OBJ in an ``.mtl`` file beside it.
         Some programs then read a mesh for each type, none of which is closed.
         """
+        if self._own:
+            told = f"{os.fspath(path)} has no {', '.join(self._own)}: files hold type, point, section and radius only"
+            warnings.warn(NeurotessWarning(told), stacklevel=2)
         self._surface.write(path, format, unit, overwrite, materials)
 
     def to_trimesh(self) -> Any:
-        """A `trimesh.Trimesh` with `type`, `point`, `section` and `radius` as vertex attributes."""
+        """A `trimesh.Trimesh` with `attributes` as vertex attributes.
+
+        Whole numbers are floating-point numbers there: glTF, by which trimesh also shows meshes in notebooks, has no
+        others for vertices.
+        """
         trimesh = needed("trimesh")
         return trimesh.Trimesh(
             self.vertices,
             self.triangles(),
             vertex_normals=self.normals,
-            vertex_attributes=self._attributes(),
+            vertex_attributes={name: _floating(values) for name, values in self.attributes.items()},
             process=False,
             metadata={"name": self.name, "units": "micrometers"},
         )
@@ -171,7 +306,7 @@ class Mesh:
         """A `pyvista.PolyData` with normals and attributes as point data."""
         pyvista = needed("pyvista")
         mesh = pyvista.PolyData.from_regular_faces(self.vertices, self.triangles())
-        for name, values in self._attributes().items():
+        for name, values in self.attributes.items():
             mesh.point_data[name] = values
         mesh.point_data["Normals"] = self.normals
         mesh.point_data.active_normals_name = "Normals"
@@ -182,7 +317,7 @@ class Mesh:
         navis = needed("navis")
         return navis.MeshNeuron((self.vertices, self.triangles()), units="1 micrometer", name=self.name)
 
-    def _attributes(self) -> dict[str, NDArray[Any]]:
+    def _built_in(self) -> dict[str, NDArray[Any]]:
         return {
             "type": self.type,
             "point": self.point,
@@ -193,12 +328,23 @@ class Mesh:
     # Python
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._surface, self.report, tuple(self.warnings), self.name)
+        told = self.report, tuple(self.warnings), self.name, self.cell, self.placement, self._own
+        return type(self), (self._surface, *told)
 
     def __repr__(self) -> str:
         count = len(self.faces) + len(self.quads)
         closed = {True: ", closed", False: ", not closed", None: ""}[self.report.get("closed")]
         return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {count} faces{closed}>"
+
+
+def _floating(values: NDArray[Any]) -> NDArray[Any]:
+    """Numbers as floating-point numbers of the fewest bits that hold them."""
+    import numpy as np
+
+    if values.dtype.kind == "f":
+        return values
+    narrow = values.astype(np.float32)
+    return narrow if (narrow == values).all() else values.astype(np.float64)
 
 
 def read_mesh(path: str | os.PathLike[str], *, format: str | None = None) -> Mesh:

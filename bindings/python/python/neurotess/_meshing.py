@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 
-from . import _neurotess
+from . import _neurotess, _options
 from ._meshes import Mesh
 from ._morphology import Morphology, _read, read
 from ._parts import Notice
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from typing import Any, Literal, TypedDict
 
+    import numpy as np
+    from numpy.typing import NDArray
     from typing_extensions import Unpack
 
     Source = Morphology | str | os.PathLike[str]
@@ -145,7 +147,7 @@ def mesh(
         "types": types,
         "quads": quads,
     }
-    recipe = _neurotess.Recipe(options)
+    recipe = _options.recipe(options)
     if not isinstance(cell, Morphology):
         cell = read(cell)
     return _mesh(recipe, cell, threads)
@@ -155,14 +157,21 @@ def _mesh(
     recipe: _neurotess.Recipe, cell: Morphology, threads: int | None, stop: _neurotess.Stop | None = None
 ) -> Mesh:
     surface, report = recipe.mesh(cell._cell, threads, stop)
-    return _of(surface, report, cell.warnings, cell.name)
+    return _of(surface, report, cell.warnings, cell.name, cell)
 
 
-def _of(surface: _neurotess.Surface, report: dict[str, Any], read: list[Notice], name: str) -> Mesh:
+def _of(
+    surface: _neurotess.Surface,
+    report: dict[str, Any],
+    read: list[Notice],
+    name: str,
+    cell: Morphology,
+    placement: NDArray[np.float64] | None = None,
+) -> Mesh:
     mended = [
         Notice(w["code"], w["message"], w["count"], w["line"], w["sample"]) for w in report.pop("warnings")
     ]
-    return Mesh(surface, report, (*read, *mended), name)
+    return Mesh(surface, report, (*read, *mended), name, cell, placement)
 
 
 class Outcome:
@@ -219,7 +228,7 @@ def mesh_many(
     >>> [result.ok for result in nt.mesh_many(cells, threads=2, level=1)]
     [True, True, True]
     """
-    recipe = _neurotess.Recipe(dict(options))
+    recipe = _options.recipe(options)
     if threads is not None and threads < 1:
         raise ValueError(f"threads={threads} is not 1 or more")
     return _results(cells, recipe, threads or _cores())

@@ -6,7 +6,7 @@ import os
 import warnings
 
 from . import _neurotess
-from ._errors import ReadWarning
+from ._errors import ReadError, ReadWarning, read_error
 from ._parts import Neurite, Notice, Section, Soma
 
 TYPE_CHECKING = False
@@ -39,6 +39,8 @@ class Morphology:
         self.edits = edits
         self._columns: dict[str, NDArray[Any]] | None = None
         self._child_ids: list[list[int]] | None = None
+        self._sections: tuple[Section, ...] | None = None
+        self._neurites: tuple[Neurite, ...] | None = None
 
     # What it is
 
@@ -103,18 +105,23 @@ class Morphology:
     # Parts
 
     @property
-    def sections(self) -> list[Section]:
+    def sections(self) -> tuple[Section, ...]:
         """All sections, depth-first: parents come before their children."""
-        count = len(self._section_columns()["first"])
-        return [Section(self, i) for i in range(count)]
+        if self._sections is None:
+            count = len(self._section_columns()["first"])
+            self._sections = tuple(Section(self, i) for i in range(count))
+        return self._sections
 
     @property
-    def neurites(self) -> list[Neurite]:
+    def neurites(self) -> tuple[Neurite, ...]:
         """All neurites, in the order of the file."""
-        numbers = self._section_columns()["neurite"].tolist()
-        starts = [i for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1]]
-        ends = [*starts, len(numbers)][1:]
-        return [Neurite(self, k, *ends_of) for k, ends_of in enumerate(zip(starts, ends, strict=True))]
+        if self._neurites is None:
+            numbers = self._section_columns()["neurite"].tolist()
+            starts = [i for i, n in enumerate(numbers) if i == 0 or n != numbers[i - 1]]
+            ends = [*starts, len(numbers)][1:]
+            pairs = zip(starts, ends, strict=True)
+            self._neurites = tuple(Neurite(self, k, *ends_of) for k, ends_of in enumerate(pairs))
+        return self._neurites
 
     @property
     def soma(self) -> Soma | None:
@@ -311,8 +318,14 @@ def _read(
     if isinstance(source, (str, os.PathLike)):
         if format is None:
             return _neurotess.Cell.read(source, strict, bad_radii)
-        with open(source, "rb") as file:
-            return _read(file, format, name or os.fspath(source), strict)
+        path = os.fspath(source)
+        try:
+            with open(path, "rb") as file:
+                return _read(file, format, name or path, strict)
+        except OSError as error:
+            if isinstance(error, ReadError):
+                raise
+            raise read_error(path, None, str(error), error.errno) from None
     if hasattr(source, "read"):
         name = name or getattr(source, "name", None)
         source = source.read()

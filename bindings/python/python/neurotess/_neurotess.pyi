@@ -92,7 +92,7 @@ class Edits:
         self, cell: Cell, synapses: list[list[float]] | None
     ) -> tuple[Cell, list[dict[str, Any]]]: ...
 
-def diff(first: Cell, second: Cell, tolerance: float) -> dict[str, Any]: ...
+def diff(first: Cell, second: Cell, tolerance: float, samples: int | None) -> dict[str, Any]: ...
 @final
 class Recipe:
     def __new__(cls, keywords: dict[str, Any]) -> Recipe: ...
@@ -171,9 +171,10 @@ class Circuit:
     def columns(self, population: int) -> dict[str, Any]: ...
     @property
     def templates(self) -> list[PathLike[str]]: ...
+    def find(self, population: str | None, ids: list[int]) -> list[tuple[int, int]]: ...
     def select(
         self,
-        ids: list[int] | None,
+        nodes: list[tuple[int, int]] | None,
         node_set: str | None,
         population: str | None,
         region: tuple[list[float], list[float]] | None,
@@ -187,7 +188,9 @@ class Circuit:
 
 @final
 class Mesher:
-    def mesh(self, population: int, row: int, threads: int | None) -> tuple[Surface, dict[str, Any]]: ...
+    def mesh(
+        self, population: int, row: int, threads: int | None
+    ) -> tuple[Surface, dict[str, Any], Cell]: ...
 
 @final
 class Report:
@@ -208,7 +211,12 @@ _View = tuple[list[float], list[float], list[float], float, bool]
 @final
 class Drawing:
     def __new__(
-        cls, cells: list[Cell], circuit: _Path | None, options: list[str], adapter: str | None
+        cls,
+        cells: list[Cell],
+        circuit: tuple[_Path, list[tuple[int, int]] | None] | None,
+        options: list[str],
+        values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
+        adapter: str | None,
     ) -> Drawing: ...
     @property
     def messages(self) -> list[str]: ...

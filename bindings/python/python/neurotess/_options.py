@@ -5,10 +5,23 @@ from __future__ import annotations
 import operator
 import os
 
+from . import _neurotess
+from ._errors import OptionError
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from typing import Any
+
+
+def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
+    """Options of meshes, checked."""
+    try:
+        return _neurotess.Recipe(dict(options))
+    except OptionError as error:
+        from ._words import with_given
+
+        raise with_given(error, options) from None
 
 
 def arguments(options: Mapping[str, Any]) -> list[str]:

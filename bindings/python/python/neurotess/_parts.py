@@ -67,6 +67,8 @@ class Soma:
     """Positions (µm) of the traced samples, (n, 3)."""
     radii: NDArray[np.float64]
     """Radii (µm) of the traced samples."""
+    samples: NDArray[np.int64]
+    """The file's own numbers of the traced samples."""
 
     def __init__(self, told: Mapping[str, Any]) -> None:
         import numpy as np
@@ -78,6 +80,7 @@ class Soma:
         self.volume = told["volume"]
         self.points = told["points"]
         self.radii = told["radii"]
+        self.samples = told["samples"]
 
     def __repr__(self) -> str:
         return f"<Soma: {self.kind}, radius {self.radius:.3g} µm>"
@@ -87,7 +90,7 @@ class Section:
     """An unbranched part of a neurite, of one type."""
 
     id: int
-    """Its number, from 0 on, in depth-first order. Meshes count from 1, and 0 is the soma."""
+    """Its index in `Morphology.sections`, depth-first. `Mesh.section` has i + 1, since 0 is the soma there."""
 
     def __init__(self, cell: Morphology, id: int) -> None:
         self._cell = cell
@@ -132,6 +135,12 @@ class Section:
     def neurite(self) -> int:
         """Number of its neurite, from 0 on."""
         return int(self._of("neurite"))
+
+    @property
+    def neuron_section(self) -> int:
+        """Its number in reports of simulations, from 1 on: the axon's come first, then those of basal dendrites, of apical
+        ones and the rest, as in NEURON."""
+        return int(self._of("neuron_section"))
 
     @property
     def order(self) -> int:
@@ -187,7 +196,7 @@ class Neurite:
     def __init__(self, cell: Morphology, id: int, first: int, end: int) -> None:
         self._cell = cell
         self.id = id
-        self.sections = [Section(cell, i) for i in range(first, end)]
+        self.sections = list(cell.sections[first:end])
 
     @property
     def root(self) -> Section:

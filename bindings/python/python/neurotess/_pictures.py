@@ -6,9 +6,8 @@ import os
 import warnings
 
 from . import _neurotess, _options
-from ._errors import NeurotessWarning, RenderError
-from ._meshes import Mesh
-from ._morphology import Morphology, read
+from ._errors import NeurotessWarning, OptionError
+from ._scene import DrawnCircuit, check_names, drawing_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,6 +16,11 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+
+    from ._meshes import Mesh
+    from ._morphology import Morphology
+    from ._nodes import Nodes
+    from ._values import Values
 
     # Not "… | …" in quotes: who evaluates annotations could not add to a text.
     Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", str, os.PathLike[str]]
@@ -34,17 +38,6 @@ if TYPE_CHECKING:
         fit: bool
 
     Meshes: TypeAlias = Union[Mesh, str, os.PathLike[str], SceneMesh, Iterable[Any]]
-
-
-class DrawnCircuit:
-    """What pictures take of a `Circuit`."""
-
-    _path: str
-
-    @property
-    def reports(self) -> dict[str, str]:
-        """The files of reports and spikes that the configuration names, by their names."""
-        raise NotImplementedError
 
 
 class Image:
@@ -100,86 +93,15 @@ class Image:
         return f"<Image: {width} × {height}>"
 
 
-def _sources(what: Any) -> tuple[list[_neurotess.Cell], str | None]:
-    """Cells, or the path of a circuit."""
-    if isinstance(what, DrawnCircuit):
-        return [], what._path
-    many = [what] if isinstance(what, (Morphology, str, os.PathLike)) else list(what)
-    if any(isinstance(one, DrawnCircuit) for one in many):
-        raise ValueError("a circuit is drawn alone")
-    if not many:
-        raise ValueError("there is no cell to draw")
-    cells = [one if isinstance(one, Morphology) else read(one) for one in many]
-    return [cell._cell for cell in cells], None
-
-
-def _drawing(what: Any, options: dict[str, Any], adapter: str | None) -> _neurotess.Drawing:
-    # Not at the top: it takes as long to import as all the rest.
-    import tempfile
-
-    from . import quiet_adapters
-
-    if not _neurotess.CAN_RENDER:
-        raise RenderError("this build draws no pictures: build it with the feature 'render'")
-    quiet_adapters()
-    cells, circuit = _sources(what)
-    options = _with_colors(options)
-    meshes = options.pop("meshes", None)
-    # Meshes in memory are read from files that last as long as that.
-    with tempfile.TemporaryDirectory(prefix="neurotess") as folder:
-        options["mesh"] = _mesh_words(meshes, folder)
-        return _neurotess.Drawing(cells, circuit, _options.arguments(options), adapter)
-
-
-def _mesh_words(meshes: Any, folder: str) -> list[str]:
-    """Meshes beside the cells as the command line takes them."""
-    from collections.abc import Mapping
-
-    if meshes is None:
-        return []
-    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or hasattr(meshes, "vertices")
-    words = []
-    for number, one in enumerate([meshes] if alone else meshes):
-        look = dict(one) if isinstance(one, Mapping) else {"mesh": one}
-        if "mesh" not in look:
-            raise ValueError(f"{one!r} names no mesh: it needs a file or a mesh as 'mesh'")
-        file = look.pop("mesh")
-        if not isinstance(file, (str, os.PathLike)):
-            surface = file if isinstance(file, Mesh) else Mesh.from_arrays(file.vertices, file.faces)
-            name = surface.name.replace(os.sep, "_") if isinstance(file, Mesh) else f"mesh {number + 1}"
-            file = os.path.join(folder, str(number), f"{name}.ply")
-            os.mkdir(os.path.dirname(file))
-            surface.save(file)
-        options = [f"{name}={_options.word(value)}" for name, value in look.items() if not isinstance(value, bool)]
-        flags = [name for name, value in look.items() if value is True]
-        words.append(",".join([os.fspath(file), *options, *flags]))
-    return words
-
-
-def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
-    """The options with a palette of one's own as those of the command line."""
-    from collections.abc import Mapping
-
-    palette = options.get("palette")
-    if not isinstance(palette, Mapping):
-        return dict(options)
-    own = {str(name): color for name, color in palette.items()}
-    for name, color in own.items():
-        if not isinstance(color, str):
-            raise ValueError(f"the color of {name!r} is {color!r}: text is needed, as in '#ff8800'")
-    background = options.get("background") or own.get("background")
-    if options.get("transparent"):
-        background = None
-    colors = {name: color for name, color in own.items() if name not in ("base", "background")}
-    return {**options, "palette": own.get("base"), "background": background, "set_color": colors}
-
-
 def render(
     what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
     *,
     size: tuple[int, int] | None = None,
     color_by: ColorBy | None = None,
     color_by_attribute: str | None = None,
+    values: Values | None = None,
+    title: str | None = None,
+    unit: str | None = None,
     report: str | os.PathLike[str] | None = None,
     time: float | None = None,
     range: tuple[float, float] | None = None,
@@ -219,7 +141,7 @@ def render(
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     ring: Mapping[int, float] | None = None,
     types: Sequence[str | int] | str | None = None,
-    nodes: Sequence[int] | str | None = None,
+    nodes: Nodes | None = None,
     node_set: str | None = None,
     population: str | None = None,
     region: tuple[Sequence[float], Sequence[float]] | None = None,
@@ -236,7 +158,9 @@ def render(
     Picture: `size` (1280, 960), `background` (``"white"``, ``"#102030"``) or `transparent`, `samples` (16),
     `legend`, `scale_bar` (True, or a length in µm), `axes` (the directions of x, y and z).
 
-    Colors: `color_by`; of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
+    Colors: `color_by`; `values` of your own, with a `title` and a `unit` for the legend: an array with a number for each
+    of ``cell.points``, of the rows of ``cell.to_table()`` (with the soma's) or of ``cell.sections``; as in
+    ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
     `time` (ms); `range`, `colormap`, `trim_colormap`; `palette`: a name, a file, or colors of your own by the name
     of a type or of anything else in the legend, as in ``{"axon": "#ff8800", "L5_PC": "#2ca02c"}``, over those of the
     palette called ``"base"``.
@@ -260,7 +184,7 @@ def render(
     the file) and ``"fit"`` (True: the camera fits it even if one can see through it).
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
-    `sample` and `sample_seed`; `cache`: whether the meshes of a large circuit are kept beside it for the next time;
+    `sample` and `sample_seed`, as in `Circuit.select`; `cache`: whether the meshes of a large circuit are kept beside it for the next time;
     `gpu_memory`: most memory of the adapter for the tracings of large scenes (bytes, or like ``"512MiB"``).
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
@@ -269,6 +193,9 @@ def render(
         "size": size,
         "color_by": color_by,
         "color_by_attribute": color_by_attribute,
+        "values": values,
+        "title": title,
+        "unit": unit,
         "report": report,
         "time": time,
         "range": range,
@@ -318,6 +245,7 @@ def render(
         "gpu_memory": gpu_memory,
         "adapter": adapter,
     }
+    _check_pairs(options)
     return next(_pictures(what, options))
 
 
@@ -337,23 +265,30 @@ def film(
     ...     picture.save(f"turn_{number:03}.png")
     """
     series = {"turntable": turntable, "time": _options.joined(time, ":"), "frames": frames}
+    check_names("film", render, options)
+    _check_pairs({**options, "time": time})
     if not turntable and time is None:
         raise ValueError("a film needs turntable=True, or time=(from, to, step)")
     return _pictures(what, {**options, **series})
 
 
+def _check_pairs(options: Mapping[str, Any]) -> None:
+    """Checks that options which belong together are there together."""
+    for name, other in (("eye", "target"), ("time", "report")):
+        if options.get(name) is not None and options.get(other) is None:
+            raise OptionError(f"{name}= needs {other}=, too", name, f"{other}= is needed, too")
+
+
 def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
     """All pictures that the options ask for."""
-    options = dict(options)
-    report, region = options.get("report"), options.get("region")
+    given, options = options, dict(options)
+    report = options.get("report")
     if report is not None and isinstance(what, DrawnCircuit):
         options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
-    if region is not None:
-        options["region"] = [*region[0], *region[1]]
     options["size"] = _options.joined(options.get("size"), "x")
     options["no_legend"] = not options.pop("legend", True)
     options["no_cache"] = not options.pop("cache", True)
-    drawing = _drawing(what, options, options.pop("adapter", None))
+    drawing = drawing_of(what, options, options.pop("adapter", None), given)
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(message), stacklevel=3)
     transparent = bool(options.get("transparent"))

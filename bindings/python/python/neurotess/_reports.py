@@ -15,14 +15,23 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
+    from ._circuits import Circuit
+    from ._morphology import Morphology
+
 
 class Report:
     """A recording: values of compartments over time, or spikes. Times are ms.
 
-    Values are read from the file when they are asked for.
+    Values are read from the file when they are asked for. `circuit`: whose cells it is of; `Circuit.report` gives it.
     """
 
-    def __init__(self, path: str | os.PathLike[str], population: str | None = None) -> None:
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        population: str | None = None,
+        *,
+        circuit: Circuit | None = None,
+    ) -> None:
         self._report = _neurotess.Report(path)
         self._path = os.fspath(path)
         names = self._report.populations
@@ -34,6 +43,7 @@ class Report:
         """The population that this is of; `Report(path, population)` is that of another."""
         self._index = names.index(population)
         self._told: dict[str, Any] | None = None
+        self._circuit = circuit
 
     @property
     def path(self) -> str:
@@ -92,15 +102,44 @@ class Report:
         first, end = self.offsets[found[0] : found[0] + 2].tolist()
         return list(range(first, end))
 
-    def compartments(self, node: int) -> pd.DataFrame:
-        """A table of a node's compartments: ``section`` (0 is the soma), ``along`` (0 to 1); needs pandas."""
+    def compartments(self, node: int, *, cell: Morphology | None = None) -> pd.DataFrame:
+        """A table of a node's compartments; needs pandas.
+
+        Columns: ``section``, as `Mesh.section` counts (0 is the soma, ``cell.sections[i]`` is i + 1), ``along`` it (0 to
+        1), and ``neuron_section``, the number in the file: there, as in NEURON, all sections of the axon come first, then
+        those of the basal dendrites, the apical ones and the rest.
+
+        ``section`` needs the node's `cell`: that of the circuit, where the report is one of `Circuit.report`. Without a
+        cell there is no such column.
+        """
+        numbers, along = self._on(node)
+        if cell is None and self._circuit is not None:
+            cell = self._circuit.morphology(node, population=self.population)
+        pandas = needed("pandas", "circuit")
+        of_cell = {} if cell is None else {"section": self._sections_of(numbers, cell)}
+        return pandas.DataFrame({**of_cell, "along": along, "neuron_section": numbers})
+
+    def _on(self, node: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Of each compartment of a node the section by its number in the file, and the place along it."""
         import numpy as np
 
         self._columns(node)
         index = int(np.flatnonzero(self.node_ids == node)[0])
         sections, along = self._report.compartments(self._index, index)
-        pandas = needed("pandas", "circuit")
-        return pandas.DataFrame({"section": sections.astype("int64"), "along": along})
+        return sections.astype("int64"), along
+
+    def _sections_of(self, numbers: NDArray[np.int64], cell: Morphology) -> NDArray[np.int64]:
+        """Sections as meshes count them, of the numbers in the file."""
+        import numpy as np
+
+        of_sections = cell._section_columns()["neuron_section"]
+        told = np.zeros(len(of_sections) + 1, np.int64)
+        told[of_sections] = np.arange(1, len(of_sections) + 1)
+        if len(numbers) and numbers.max() >= len(told):
+            raise ValueError(
+                f"{self._path} has a section {numbers.max()}, and {cell.name} has {len(of_sections)}: it is not of this cell"
+            )
+        return told[numbers]
 
     def values(
         self,
@@ -134,8 +173,10 @@ class Report:
         times, nodes = self._report.spikes(self._index)
         return pandas.DataFrame({"time": times, "node_id": nodes.astype("int64")})
 
-    def __reduce__(self) -> tuple[type[Report], tuple[str, str]]:
-        return type(self), (self._path, self.population)
+    def __reduce__(self) -> tuple[Any, ...]:
+        from functools import partial
+
+        return partial(type(self), circuit=self._circuit), (self._path, self.population)
 
     def __repr__(self) -> str:
         if self.is_of_spikes:

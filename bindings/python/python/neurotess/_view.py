@@ -7,7 +7,8 @@ import warnings
 
 from ._errors import NeurotessWarning
 from ._packages import needed
-from ._pictures import Image, _drawing
+from ._pictures import Image, render
+from ._scene import check_names, drawing_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 
     from . import _neurotess
     # The second is a part of the first: who evaluates annotations looks for it here.
-    from ._pictures import Drawable, DrawnCircuit
+    from ._pictures import Drawable
+    from ._scene import DrawnCircuit
 
 needed("jupyter_rfb", "notebook")
 from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
@@ -41,8 +43,9 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
 
     `what` and the options are those of `render`, without those of the camera, of which there are `camera` and
     `orthographic` (no perspective): both can be set. With a `report`, `time` can be set.
-    `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``,
-    ``sample`` and ``position``; with None beside them.
+    `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``
+    (0 is the soma, as in `Mesh.section`), ``section_index`` (of ``cell.sections``; −1 is the soma), ``sample`` and
+    ``position``; with None beside them.
 
     >>> view = nt.View(cell)                                         # doctest: +SKIP
     >>> view.on_pick = print                                         # doctest: +SKIP
@@ -55,6 +58,14 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     """What colors tell, as in `render`. Setting it makes the scene anew."""
     time = Float(None, allow_none=True)
     """Time (ms) of the report that is shown; set to any time, it is that of the frame which shows then."""
+
+    # What is closed may not have been made.
+    _drawings: tuple[_neurotess.Drawing, _neurotess.Drawing] | None = None
+
+    def __new__(cls, *what: Any, **options: Any) -> Any:
+        # Before there is anything to close.
+        check_names("View", render, {name: None for name in options if name != "what"})
+        return super().__new__(cls, *what, **options)
 
     def __init__(
         self,
@@ -87,7 +98,6 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._rest: Any = None
         self._pressed: tuple[float, float] | None = None
         self._last: tuple[float, float] | None = None
-        self._drawings: tuple[_neurotess.Drawing, _neurotess.Drawing] | None = None
         self._times: list[float] = []
         self._picture = 0
         self._shown_colors: str | None = None
@@ -99,6 +109,18 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
             self.time = self._times[0] if time is None else time
         elif time is not None:
             raise ValueError("there is no report, so there are no times")
+        self._whole = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        # A misspelled property would be taken and do nothing.
+        if not (name.startswith("_") or hasattr(self, name)) and self.__dict__.get("_whole"):
+            from difflib import get_close_matches
+
+            known = [known for known in vars(View) if not known.startswith("_")] + ["on_pick"]
+            near = get_close_matches(name, known, 1)
+            hint = f": did you mean {near[0]!r}?" if near else ""
+            raise AttributeError(f"a View has no {name!r}{hint}")
+        super().__setattr__(name, value)
 
     # What is shown
 
@@ -186,9 +208,10 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
             options["no_legend"] = True
         if not options.pop("cache", True):
             options["no_cache"] = True
+        given = {**self._options, "color_by": color_by, "size": self._size}
         quick = {**options, "lod": "exploration", "budget": self._budget}
-        full = _drawing(self._what, {**options, "lod": "static"}, self._adapter)
-        made = (_drawing(self._what, quick, self._adapter), full)
+        full = drawing_of(self._what, {**options, "lod": "static"}, self._adapter, given)
+        made = (drawing_of(self._what, quick, self._adapter, given), full)
         for message in full.messages:
             warnings.warn(NeurotessWarning(message), stacklevel=3)
         first = self._drawings is None

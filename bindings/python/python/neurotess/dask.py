@@ -13,7 +13,7 @@ import os
 import tempfile
 from collections import namedtuple
 
-from . import __version__, _neurotess
+from . import __version__, _neurotess, _options
 from ._meshing import _mesh
 from ._morphology import Morphology, _read
 
@@ -64,7 +64,7 @@ def mesh(
     already, of the same content and options, is left alone, so a batch that was stopped goes on where it was.
     """
     # Wrong options are told here, not by each worker.
-    _neurotess.Recipe(dict(options))
+    _options.recipe(options)
     folder = os.path.abspath(os.fspath(out))
     os.makedirs(os.path.join(folder, RECORDS), exist_ok=True)
     files = [os.path.abspath(os.fspath(path)) for path in paths]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ._circuits import Report
+    from ._reports import Report
     from ._morphology import Morphology
 
 __all__ = ["dendrogram", "sholl", "sholl_counts", "voltage"]

@@ -53,13 +53,15 @@ impl Edits {
     }
 }
 
-/// What differs between two cells. `tolerance`: distances and differences of radii up to this one (µm) are none.
+/// What differs between two cells. `tolerance`: distances and differences of radii up to this one (µm) are none;
+/// `samples`: how many are named of each kind of difference, all if it is none.
 #[pyfunction]
 pub(crate) fn diff<'py>(
     py: Python<'py>,
     first: &Cell,
     second: &Cell,
     tolerance: f64,
+    samples: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         let message = format!("tolerance={tolerance} is not a number from 0 on");
@@ -68,7 +70,7 @@ pub(crate) fn diff<'py>(
     let cells = [&first.morphology, &second.morphology].map(Arc::clone);
     let difference = released(py, None, move || {
         let [first, second] = cells;
-        Difference::of(&first, &second, tolerance)
+        Difference::naming(&first, &second, tolerance, samples.unwrap_or(usize::MAX))
     })?;
     json::serialized(py, &difference)
 }

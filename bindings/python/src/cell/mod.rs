@@ -10,6 +10,7 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use neurotess::circuit::SectionOrder;
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
 use neurotess::morphology::{Measures, Morphology, shape, soma_area_volume};
 use neurotess::output::{Existing, Output};
@@ -70,6 +71,12 @@ impl Cell {
             parents: PyOnceLock::new(),
             samples: PyOnceLock::new(),
         }
+    }
+
+    /// A cell that is somewhere already.
+    pub(crate) fn shared(morphology: &Arc<Morphology>, read: &Read) -> Self {
+        let warnings = read.warnings.iter().cloned().map(Told::from).collect();
+        Self::new(Arc::clone(morphology), read.format, warnings)
     }
 
     /// What a reader gave.
@@ -246,6 +253,7 @@ impl Cell {
         sections.set_item("parent", of(&parent)?)?;
         let neurites: Vec<i64> = wide(shape::neurites(cell));
         sections.set_item("neurite", arrays::column(py, neurites)?)?;
+        sections.set_item("neuron_section", arrays::column(py, neuron_numbers(cell))?)?;
         let orders: Vec<i64> = wide(shape::branch_orders(cell));
         sections.set_item("order", arrays::column(py, orders)?)?;
         sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
@@ -272,7 +280,8 @@ impl Cell {
             let samples = soma.samples.iter();
             let at = |p: glam::Vec3| (origin + p.as_dvec3()).to_array();
             let points = samples.clone().map(|s| at(s.position)).collect();
-            let radii = samples.map(|s| f64::from(s.radius)).collect();
+            let radii = samples.clone().map(|s| f64::from(s.radius)).collect();
+            let numbers = samples.map(|s| s.id).collect();
             let told = PyDict::new(py);
             told.set_item("kind", soma.kind.name())?;
             told.set_item("center", at(soma.center))?;
@@ -281,6 +290,7 @@ impl Cell {
             told.set_item("volume", volume)?;
             told.set_item("points", arrays::rows(py, points)?)?;
             told.set_item("radii", arrays::column::<f64>(py, radii)?)?;
+            told.set_item("samples", arrays::column::<i64>(py, numbers)?)?;
             Ok(told)
         };
         self.morphology.somata.iter().map(one).collect()
@@ -369,6 +379,15 @@ impl Cell {
             .ok_or_else(|| PyValueError::new_err("these bytes are no cell of this version"))?;
         Ok(Self::new(Arc::new(morphology), &format, warnings))
     }
+}
+
+/// The number of each section in reports of simulations, where 0 is the soma.
+fn neuron_numbers(cell: &Morphology) -> Vec<i64> {
+    let mut numbers = vec![0; cell.sections.len()];
+    for (section, number) in SectionOrder::of(cell).sections().iter().zip(1..) {
+        numbers[section.index()] = number;
+    }
+    numbers
 }
 
 /// What becomes of a file that is there.

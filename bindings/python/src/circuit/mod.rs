@@ -15,7 +15,7 @@ use neurotess::circuit::{Instance, soma_center};
 use neurotess::mesh::Placed;
 use neurotess::recipe::{CellMesh, MeshOptions};
 use numpy::PyArray2;
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -184,12 +184,45 @@ impl Circuit {
         templates.map(|template| template.path.clone()).collect()
     }
 
+    /// Population and row of the nodes with these ids: of one population, or of whichever has them.
+    ///
+    /// # Errors
+    /// `KeyError` for an id that is not there, `ValueError` for one that several populations have.
+    fn find(&self, population: Option<&str>, ids: Vec<u64>) -> PyResult<Vec<(u32, u32)>> {
+        let populations = || self.circuit.populations.iter().zip(0..);
+        let searched =
+            || populations().filter(|(p, _)| population.is_none_or(|name| p.name == name));
+        if let Some(name) = population.filter(|_| searched().next().is_none()) {
+            let names: Vec<_> = populations().map(|(p, _)| p.name.as_str()).collect();
+            let wrong = format!("no population '{name}': there are {}", names.join(", "));
+            return Err(PyValueError::new_err(wrong));
+        }
+        let mut of_id: HashMap<u64, Vec<(u32, u32)>> = HashMap::new();
+        for (population, index) in searched() {
+            for (&id, row) in population.ids.iter().zip(0..) {
+                of_id.entry(id).or_default().push((index, row));
+            }
+        }
+        let mut found = Vec::with_capacity(ids.len());
+        for id in ids {
+            match of_id.get(&id) {
+                Some(nodes) if nodes.iter().all(|node| node.0 == nodes[0].0) => found.extend(nodes),
+                Some(nodes) => return Err(ambiguous(&self.circuit, id, nodes)),
+                None => {
+                    let of = population.map_or_else(String::new, |name| format!(" in '{name}'"));
+                    return Err(PyKeyError::new_err(format!("no node {id}{of}")));
+                }
+            }
+        }
+        Ok(found)
+    }
+
     /// Population and row of each selected node.
     #[expect(clippy::too_many_arguments, reason = "what selects cells")]
     fn select(
         &self,
         py: Python<'_>,
-        ids: Option<Vec<u64>>,
+        nodes: Option<Vec<(u32, u32)>>,
         node_set: Option<String>,
         population: Option<String>,
         region: Option<([f64; 3], [f64; 3])>,
@@ -198,7 +231,8 @@ impl Circuit {
     ) -> PyResult<Pair<u32, u32>> {
         let selection = Selection {
             population,
-            ids: ids.map(|ids| ids.into_iter().map(|id| (id, id)).collect()),
+            ids: None,
+            nodes: nodes.map(|nodes| nodes.into_iter().map(node_ref).collect()),
             node_set,
             region: region.map(|(a, b)| {
                 let (a, b) = (DVec3::from(a), DVec3::from(b));
@@ -252,7 +286,7 @@ impl Circuit {
         arrays::rows(py, places.collect())
     }
 
-    /// Meshes cells of this circuit.
+    /// Meshes cells of this circuit: the surface, what is known of its making, and the cell.
     fn mesher(&self, recipe: &Recipe) -> Mesher {
         Mesher {
             circuit: Arc::clone(&self.circuit),
@@ -284,14 +318,12 @@ impl Mesher {
         population: u32,
         row: u32,
         threads: Option<usize>,
-    ) -> PyResult<(Surface, Bound<'py, PyAny>)> {
+    ) -> PyResult<(Surface, Bound<'py, PyAny>, Cell)> {
         let instance = instance(&self.circuit, population, row)?;
         let template = instance.template;
-        {
-            // Its errors have their own exception.
-            let file = &self.circuit.templates[template.index()];
-            py.detach(|| file.read()).map_err(|e| errors::read(py, e))?;
-        }
+        // Its errors have their own exception.
+        let file = &self.circuit.templates[template.index()];
+        let read = py.detach(|| file.read()).map_err(|e| errors::read(py, e))?;
         let (circuit, meshes) = (Arc::clone(&self.circuit), Arc::clone(&self.meshes));
         let options = self.options.clone();
         let made = stoppable(py, threads, &Stop::default(), move |stopped| {
@@ -302,9 +334,17 @@ impl Mesher {
                 meshed(morphology, &options, stopped)
             })?;
             let at = instance.world_from_cell(soma_center(&read.morphology));
-            taken(&mesh, |surface| placed(surface, at, stopped))
+            let (columns, report) = taken(&mesh, |surface| placed(surface, at, stopped))?;
+            Ok((columns, report, Arc::clone(&mesh.morphology)))
         })?;
-        of_made(py, made)
+        let made: Result<_, String> = made;
+        let (made, morphology) = match made {
+            Ok((columns, report, morphology)) => (Ok((columns, report)), Some(morphology)),
+            Err(error) => (Err(error), None),
+        };
+        let (surface, report) = of_made(py, made)?;
+        let morphology = morphology.ok_or_else(|| errors::bug("a mesh without a tracing"))?;
+        Ok((surface, report, Cell::shared(&morphology, read)))
     }
 }
 
@@ -333,6 +373,24 @@ fn kept(
     }
     meshes.insert(template, Arc::clone(&mesh));
     Ok(mesh)
+}
+
+fn node_ref((population, row): (u32, u32)) -> NodeRef {
+    NodeRef { population, row }
+}
+
+/// An id that several populations have.
+fn ambiguous(circuit: &circuits::Circuit, id: u64, nodes: &[(u32, u32)]) -> PyErr {
+    let name =
+        |&(population, _): &(u32, u32)| circuit.populations[population as usize].name.as_str();
+    let mut names: Vec<_> = nodes.iter().map(name).collect();
+    names.dedup();
+    PyValueError::new_err(format!(
+        "several populations have a node {id} ({}): give population=, rows of `Circuit.nodes`, or pairs like \
+         ('{}', {id})",
+        names.join(", "),
+        names[0]
+    ))
 }
 
 fn instance(circuit: &circuits::Circuit, population: u32, row: u32) -> PyResult<Instance> {

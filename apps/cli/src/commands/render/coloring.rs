@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, Recording,
-    by_attribute,
+    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, OwnValues,
+    Recording, by_attribute, by_values,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -122,15 +122,16 @@ impl PictureColors {
     }
 }
 
-/// Colors of cells. `instances`: those of a circuit; `of_cells`: the cell that each instance shows.
+/// Colors of cells: by the options, or by `values` of one's own. `instances`: those of a circuit; `of_cells`: the cell
+/// that each instance shows.
 ///
 /// # Errors
 /// A report is invalid.
 pub(crate) fn of_pictures(
     cells: &[&MeshedCell],
-    instances: Option<&CircuitInstances>,
-    of_cells: &[usize],
+    (instances, of_cells): (Option<&CircuitInstances>, &[usize]),
     args: &RenderArgs,
+    values: Option<&OwnValues>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
     let background = args.background();
@@ -163,9 +164,10 @@ pub(crate) fn of_pictures(
             over_time(recording, args, &scheme, reporter)?
         }
         _ => {
-            let coloring = match instances {
-                Some(instances) => of_circuit(&cells, instances, args, &scheme)?,
-                None => None,
+            let coloring = match (values, instances) {
+                (Some(values), _) => Some(by_values(&cells, values, &scheme)),
+                (None, Some(instances)) => of_circuit(&cells, instances, args, &scheme)?,
+                (None, None) => None,
             };
             // Values have been handled: arguments were checked, so that they come with a report.
             let by = args.color_by.and_then(by).unwrap_or_default();

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 use glam::{DVec2, DVec3};
-use neurotess::coloring::MarkerSet;
+use neurotess::circuit::NodeRef;
+use neurotess::coloring::{MarkerSet, OwnValues};
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::overlay::Overlay;
 use neurotess::render::{
@@ -42,8 +43,8 @@ struct Options {
 pub enum DrawingInput<'a> {
     /// Cells with their names, in their own coordinates.
     Cells(&'a [(&'a str, &'a Morphology)]),
-    /// A circuit, of which the options select cells.
-    Circuit(&'a Path),
+    /// A circuit, of which the options select cells; only of these, if some are listed.
+    Circuit(&'a Path, Option<&'a [NodeRef]>),
 }
 
 /// Why nothing is drawn.
@@ -92,8 +93,8 @@ pub struct Picked {
 }
 
 impl Drawing {
-    /// Reads, meshes and uploads what is to be drawn. Returns what there is to say about it, too. Ends soon after
-    /// another thread sets `stopped`.
+    /// Reads, meshes and uploads what is to be drawn; cells may be colored by `values`. Returns what there is to say
+    /// about it, too. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
     /// Wrong options, inputs that fail, or a device that does.
@@ -101,12 +102,16 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         options: impl IntoIterator<Item = String>,
+        values: Option<&OwnValues>,
         stopped: &Arc<AtomicBool>,
     ) -> Result<(Self, Vec<String>), DrawError> {
-        let Options { args, common } = parsed(input, options)?;
+        let Options { mut args, common } = parsed(input, options)?;
+        if let DrawingInput::Circuit(_, Some(nodes)) = input {
+            args.cells.list(nodes);
+        }
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
-        let made = Self::made(gpu, input, args, &reporter);
+        let made = Self::made(gpu, input, args, values, &reporter);
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),
@@ -122,10 +127,13 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         args: Box<RenderArgs>,
+        values: Option<&OwnValues>,
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
         vertex_source::mode(&args)?;
-        checks::check_value(&args)?;
+        if values.is_none() {
+            checks::check_value(&args)?;
+        }
         let RenderScene {
             entries,
             placements,
@@ -133,7 +141,7 @@ impl Drawing {
             ..
         } = match input {
             DrawingInput::Cells(cells) => in_memory(cells, &args, reporter.stopped())?,
-            DrawingInput::Circuit(_) => scene::read(&args, reporter)?,
+            DrawingInput::Circuit(..) => scene::read(&args, reporter)?,
         };
         let done = |entry| match entry {
             Entry::Done(cell) => Some(cell),
@@ -152,8 +160,8 @@ impl Drawing {
         let shown: Vec<&MeshedCell> = cells.iter().collect();
         let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
         let meshes = SceneMeshes::read(&args.meshes, reporter)?;
-        let mut colored =
-            coloring::of_pictures(&shown, instances.as_ref(), &of_cells, &args, reporter)?;
+        let shown_by = (instances.as_ref(), &of_cells[..]);
+        let mut colored = coloring::of_pictures(&shown, shown_by, &args, values, reporter)?;
         colored.add_meshes(&meshes);
         let mut spheres = bounds::spheres(&shown, &placements);
         spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
@@ -421,7 +429,7 @@ fn parsed(
 ) -> Result<Options, DrawError> {
     let path = match input {
         DrawingInput::Cells(_) => Path::new("-"),
-        DrawingInput::Circuit(path) => path,
+        DrawingInput::Circuit(path, _) => path,
     };
     let mut command = vec!["render".into()];
     command.extend(options.into_iter().map(std::ffi::OsString::from));

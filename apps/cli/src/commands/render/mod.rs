@@ -83,7 +83,8 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         return reporter.document(&stats::Document::new(&entries, &[], None));
     }
     let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
-    let mut colored = coloring::of_pictures(&cells, instances.as_ref(), &of_cells, args, reporter)?;
+    let shown_by = (instances.as_ref(), &of_cells[..]);
+    let mut colored = coloring::of_pictures(&cells, shown_by, args, None, reporter)?;
     colored.add_meshes(&meshes);
     let mut spheres = bounds::spheres(&cells, &placements);
     spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));

@@ -1,0 +1,161 @@
+"""What pictures show: cells or a circuit, meshes beside them, colors; options as the renderer takes them."""
+
+from __future__ import annotations
+
+import os
+
+from . import _neurotess, _options
+from ._errors import OptionError, RenderError, missing_file
+from ._meshes import Mesh
+from ._morphology import Morphology, read
+from ._values import values_of
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+#: What selects cells of a circuit.
+SELECTION = ("nodes", "node_set", "population", "region", "sample", "sample_seed")
+
+
+class DrawnCircuit:
+    """What pictures take of a `Circuit`."""
+
+    _path: str
+
+    @property
+    def reports(self) -> dict[str, str]:
+        """The files of reports and spikes that the configuration names, by their names."""
+        raise NotImplementedError
+
+    def _rows(self, *selection: Any) -> list[tuple[int, int]]:
+        raise NotImplementedError
+
+
+def _chosen(circuit: DrawnCircuit, options: dict[str, Any]) -> list[tuple[int, int]] | None:
+    """Takes what selects cells from the options: population and row of each; None if nothing does."""
+    nodes, node_set, population, region, sample, seed = (options.pop(name, None) for name in SELECTION)
+    if all(option is None for option in (nodes, node_set, population, region, sample)):
+        return None
+    return circuit._rows(nodes, node_set, population, region, sample, 1 if seed is None else seed)
+
+
+def _cells(what: Any, options: dict[str, Any]) -> list[Morphology]:
+    many = [what] if is_alone(what) else list(what)
+    if any(isinstance(one, DrawnCircuit) for one in many):
+        raise ValueError("a circuit is drawn alone")
+    if not many:
+        raise ValueError("there is no cell to draw")
+    given = [name for name in SELECTION if options.get(name) is not None]
+    if given:
+        raise ValueError(f"{given[0]}= selects cells of a circuit, and none is drawn")
+    return [one if isinstance(one, Morphology) else read(one) for one in many]
+
+
+def is_alone(what: Any) -> bool:
+    """Whether it is one cell, and no list of them."""
+    return isinstance(what, (Morphology, str, os.PathLike))
+
+
+def check_names(name: str, function: Callable[..., Any], options: dict[str, Any]) -> None:
+    """Checks that these are keywords of a function, which hands them over to another.
+
+    Raises ``TypeError``, as Python itself does.
+    """
+    import inspect
+    from difflib import get_close_matches
+
+    known = list(inspect.signature(function).parameters)[1:]
+    for option in options:
+        if option not in known:
+            near = get_close_matches(option, known, 1)
+            hint = f": did you mean {near[0]!r}?" if near else ""
+            raise TypeError(f"{name}() got an unexpected keyword argument {option!r}{hint}")
+
+
+def drawing_of(
+    what: Any, options: dict[str, Any], adapter: str | None, given: dict[str, Any]
+) -> _neurotess.Drawing:
+    """Cells or a circuit on the device; `given`: the options as the caller gave them, for messages."""
+    # Not at the top: it takes as long to import as all the rest.
+    import tempfile
+
+    from . import quiet_adapters
+
+    if not _neurotess.CAN_RENDER:
+        raise RenderError("this build draws no pictures: build it with the feature 'render'")
+    quiet_adapters()
+    options = _with_colors(options)
+    if isinstance(what, DrawnCircuit):
+        cells, circuit = [], (what._path, _chosen(what, options))
+    else:
+        cells, circuit = _cells(what, options), None
+    values = values_of(cells, is_alone(what), options)
+    meshes = options.pop("meshes", None)
+    for name, is_file in (("points", True), ("report", circuit is not None)):
+        if is_file and options.get(name) is not None:
+            _check_file(options[name])
+    # Meshes in memory are read from files that last as long as that.
+    with tempfile.TemporaryDirectory(prefix="neurotess") as folder:
+        options["mesh"] = _mesh_words(meshes, folder)
+        words = _options.arguments(options)
+        try:
+            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, values, adapter)
+        except OptionError as error:
+            from ._words import with_given
+
+            raise with_given(error, given) from None
+
+
+def _check_file(path: str | os.PathLike[str]) -> None:
+    if not os.path.exists(path):
+        raise missing_file(os.fspath(path))
+
+
+def _mesh_words(meshes: Any, folder: str) -> list[str]:
+    """Meshes beside the cells as the command line takes them."""
+    from collections.abc import Mapping
+
+    if meshes is None:
+        return []
+    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or hasattr(meshes, "vertices")
+    words = []
+    for number, one in enumerate([meshes] if alone else meshes):
+        look = dict(one) if isinstance(one, Mapping) else {"mesh": one}
+        if "mesh" not in look:
+            raise ValueError(f"{one!r} names no mesh: it needs a file or a mesh as 'mesh'")
+        file = look.pop("mesh")
+        if isinstance(file, (str, os.PathLike)):
+            _check_file(file)
+        else:
+            surface = file if isinstance(file, Mesh) else Mesh.from_arrays(file.vertices, file.faces)
+            name = surface.name.replace(os.sep, "_") if isinstance(file, Mesh) else f"mesh {number + 1}"
+            file = os.path.join(folder, str(number), f"{name}.ply")
+            os.mkdir(os.path.dirname(file))
+            surface.save(file)
+        options = [f"{name}={_options.word(value)}" for name, value in look.items() if not isinstance(value, bool)]
+        flags = [name for name, value in look.items() if value is True]
+        words.append(",".join([os.fspath(file), *options, *flags]))
+    return words
+
+
+def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
+    """The options with a palette of one's own as those of the command line."""
+    from collections.abc import Mapping
+
+    palette = options.get("palette")
+    if not isinstance(palette, Mapping):
+        # A name of a palette has no extension.
+        if isinstance(palette, (str, os.PathLike)) and os.path.splitext(palette)[1]:
+            _check_file(palette)
+        return dict(options)
+    own = {str(name): color for name, color in palette.items()}
+    for name, color in own.items():
+        if not isinstance(color, str):
+            raise ValueError(f"the color of {name!r} is {color!r}: text is needed, as in '#ff8800'")
+    background = options.get("background") or own.get("background")
+    if options.get("transparent"):
+        background = None
+    colors = {name: color for name, color in own.items() if name not in ("base", "background")}
+    return {**options, "palette": own.get("base"), "background": background, "set_color": colors}

@@ -1,0 +1,110 @@
+"""Numbers of one's own, by which cells are colored."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any, TypeAlias, Union
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from ._morphology import Morphology
+
+    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
+    Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[Any]]
+    #: By cell the numbers of its points and that of its somata; what they are, and their unit.
+    Told: TypeAlias = tuple[list[tuple[NDArray[np.float32], float]], str, str]
+
+KINDS = ("point", "sample", "section")
+
+
+def values_of(cells: list[Morphology], alone: bool, options: dict[str, Any]) -> Told | None:
+    """Takes `values`, `title` and `unit` from the options of a picture; `alone`: its cell is no list."""
+    values, title, unit = (options.pop(name, None) for name in ("values", "title", "unit"))
+    if values is None:
+        for name, given in (("title", title), ("unit", unit)):
+            if given is not None:
+                raise ValueError(f"{name}={given!r} is of values: give values=, too")
+        return None
+    for name in ("color_by", "color_by_attribute", "report"):
+        if options.get(name) is not None:
+            raise ValueError(f"values= are what colors tell: leave out {name}={options[name]!r}")
+    if not cells:
+        raise ValueError("values= are of cells: those of a circuit are colored by report= or color_by_attribute=")
+    if alone:
+        values = [values]
+    elif isinstance(values, Mapping) or len(values) != len(cells):
+        raise ValueError(f"values= of {len(cells)} cells are a list with an array, or None, for each")
+    told = [_of_cell(cell, one) for cell, one in zip(cells, values, strict=True)]
+    return told, str(title or ""), str(unit or "")
+
+
+def _of_cell(cell: Morphology, values: Any) -> tuple[NDArray[np.float32], float]:
+    import numpy as np
+
+    if values is None:
+        return np.full(len(cell), np.nan, np.float32), np.nan
+    kind, array = _told(values)
+    if array.ndim != 1 or array.dtype.kind not in "fiub":
+        raise ValueError(f"values= of {cell.name} are {array.dtype} of shape {array.shape}: one number for each is needed")
+    kinds = _kinds(cell, len(array)) if kind is None else [k for k in _kinds(cell, len(array)) if k == kind]
+    if len(kinds) != 1:
+        raise ValueError(_wrong_length(cell, len(array), kind, kinds))
+    numbers = array.astype(np.float32)
+    soma = len(cell.to_table()) - len(cell)
+    if kinds == ["point"]:
+        return numbers, np.nan
+    if kinds == ["sample"]:
+        return np.ascontiguousarray(numbers[soma:]), _mean(numbers[:soma])
+    # Of sections the soma's number may come first, as meshes count.
+    with_soma = len(numbers) > len(cell.sections)
+    columns = cell._section_columns()
+    of_points = np.repeat(numbers[with_soma:], columns["end"] - columns["first"])
+    return np.ascontiguousarray(of_points), float(numbers[0]) if with_soma else np.nan
+
+
+def _told(values: Any) -> tuple[str | None, NDArray[Any]]:
+    import numpy as np
+
+    if not isinstance(values, Mapping):
+        return None, np.asarray(values)
+    if len(values) != 1 or next(iter(values)) not in KINDS:
+        raise ValueError(f"values= have the keys {list(values)}: one of {', '.join(map(repr, KINDS))} is needed")
+    [(kind, array)] = values.items()
+    return kind, np.asarray(array)
+
+
+def _kinds(cell: Morphology, count: int) -> list[str]:
+    """What as many values may be of."""
+    points, samples, sections = len(cell), len(cell.to_table()), len(cell.sections)
+    kinds = ["point"] if count == points else []
+    if count == samples != points:
+        kinds.append("sample")
+    if count in (sections, sections + 1):
+        kinds.append("section")
+    return kinds
+
+
+def _wrong_length(cell: Morphology, count: int, kind: str | None, kinds: list[str]) -> str:
+    if len(kinds) > 1:
+        named = " or ".join(f"values={{{k!r}: …}}" for k in kinds)
+        return f"values= of {cell.name}: {count} may be of {'s or '.join(kinds)}s: say {named}"
+    points, samples, sections = len(cell), len(cell.to_table()), len(cell.sections)
+    possible = {
+        "point": f"{points} points",
+        "sample": f"{samples} samples with the soma's",
+        "section": f"{sections} sections, or {sections + 1} with the soma first",
+    }
+    wanted = possible[kind] if kind else "; ".join(possible.values())
+    return f"values= of {cell.name} are {count}: it has {wanted}"
+
+
+def _mean(numbers: NDArray[np.float32]) -> float:
+    import numpy as np
+
+    known = numbers[np.isfinite(numbers)]
+    return float(known.mean()) if len(known) else np.nan
