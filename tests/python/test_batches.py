@@ -28,6 +28,21 @@ def test_one_bad_file_does_not_end_the_batch(samples: Path, tmp_path: Path) -> N
     assert results[3].mesh is not None and results[3].mesh.closed
 
 
+def test_folders_and_single_cells_are_batches(samples: Path, tmp_path: Path) -> None:
+    for name in ("star", "granule"):
+        (tmp_path / f"{name}.swc").write_bytes((samples / f"{name}.swc").read_bytes())
+    (tmp_path / "notes.txt").write_text("no tracing")
+    made = list(nt.mesh_many(tmp_path, level=1, threads=2))
+    assert [Path(str(result.input)).name for result in made] == ["granule.swc", "star.swc"]
+    assert all(result.ok for result in made)
+    [one] = nt.mesh_many(str(samples / "star.swc"), level=1)
+    [same] = nt.mesh_many(nt.read(samples / "star.swc"), level=1)
+    assert one.mesh is not None and same.mesh is not None and (one.mesh.vertices == same.mesh.vertices).all()
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(nt.ReadError, match="has no tracings"):
+        nt.mesh_many(tmp_path / "empty")
+
+
 def test_any_number_of_threads_gives_the_same() -> None:
     cells = [nt.synth("granule", seed=seed, points=80) for seed in range(6)]
     one = [result.mesh for result in nt.mesh_many(cells, threads=1, level=2)]

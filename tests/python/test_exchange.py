@@ -142,3 +142,56 @@ def test_packages_are_named_as_pip_knows_them(monkeypatch: pytest.MonkeyPatch) -
     picture = nt.Image(np.zeros((2, 3, 4), np.uint8))
     with pytest.raises(ImportError, match="pip install pillow"):
         picture.to_pillow()
+
+
+@pytest.mark.full
+def test_names_ids_and_connectors_come_and_go_with_navis(cell: nt.Morphology) -> None:
+    navis = pytest.importorskip("navis")
+    pandas = pytest.importorskip("pandas")
+    neuron = cell.to_navis()
+    node = int(cell.samples[3])
+    row = {"connector_id": [7], "node_id": [node], "x": [1000.0], "y": [2000.0], "z": [3000.0], "type": ["pre"]}
+    table = neuron.nodes.copy()
+    table[["x", "y", "z", "radius"]] *= 1000
+    in_nm = navis.TreeNeuron(table, units="1 nanometer", name="one", id=720575940)
+    in_nm.connectors = pandas.DataFrame(row)
+    ours = nt.Morphology.from_navis(in_nm)
+    assert (ours.name, ours.id) == ("one", 720575940)
+    assert ours.connectors is not None and ours.connectors[["x", "y", "z"]].to_numpy().tolist() == [[1.0, 2.0, 3.0]]
+    import pickle
+
+    theirs = pickle.loads(pickle.dumps(ours)).to_navis()
+    assert (theirs.name, theirs.id) == ("one", 720575940)
+    assert theirs.connectors.node_id.tolist() == [node] and theirs.connectors.x.tolist() == [1.0]
+    with pytest.warns(nt.NeurotessWarning, match="connectors are left out"):
+        moved = nt.edit(ours, recenter=True)
+    assert moved.connectors is None and moved.id == 720575940
+    assert cell.to_navis().name == cell.name
+
+
+@pytest.mark.full
+def test_names_come_and_go_with_neurom_and_morphio(samples: Path) -> None:
+    neurom = pytest.importorskip("neurom")
+    cell = nt.read(samples / "granule.swc")
+    assert nt.Morphology.from_neurom(cell.to_neurom()).name == cell.name == "granule"
+    assert nt.Morphology.from_neurom(neurom.load_morphology(str(samples / "granule.swc"))).name.startswith("granule")
+    assert nt.Morphology.from_morphio(cell.to_morphio(), name="granule").name == "granule"
+
+
+@pytest.mark.full
+def test_cells_of_other_packages_are_taken_as_they_are(cell: nt.Morphology, can_draw: bool) -> None:
+    navis = pytest.importorskip("navis")
+    pytest.importorskip("neurom")
+    ours = nt.mesh(cell, level=1)
+    others = [cell.to_navis(), cell.to_morphio(), cell.to_neurom()]
+    for theirs in others:
+        assert nt.mesh(theirs, level=1).volume == pytest.approx(ours.volume, rel=1e-4)
+        assert nt.edit(theirs, scale=2).points == pytest.approx(2 * cell.points, abs=1e-3)
+        assert nt.diff(theirs, cell, tolerance=1e-3)["moved"]["count"] == 0
+    options = {"size": (64, 48), "samples": 1, "legend": False, "color_by": "neuron"}
+    drawn = [np.asarray(nt.render(what, **options)) for what in (cell, others[0], [others[0]], navis.NeuronList(others[0]))]
+    assert all((picture == drawn[0]).mean() > 0.98 for picture in drawn)
+    for many in (others, navis.NeuronList([others[0], others[0]]), others[0]):
+        assert all(result.ok for result in nt.mesh_many(many, level=1))
+    with pytest.raises(TypeError, match="MeshNeuron of navis has no tracing"):
+        nt.mesh(ours.to_navis())

@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 import io
 import pickle
+import sys
+import types
 import warnings
 from pathlib import Path
 
@@ -248,3 +250,41 @@ def test_forks_have_angles(cell: nt.Morphology) -> None:
     assert trunk.local_bifurcation_angle == pytest.approx(angle)
     assert trunk.remote_bifurcation_angle == pytest.approx(angle)
     assert cell.sections[0].local_bifurcation_angle is None
+
+
+def test_lists_homes_and_addresses_are_read(
+    samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = samples / "granule.swc"
+    cell = nt.read(file)
+    several = nt.read([file, str(file), file.read_bytes()])
+    assert len(several) == 3 and all((one.points == cell.points).all() for one in several)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    (tmp_path / "mine.swc").write_bytes(file.read_bytes())
+    assert nt.read("~/mine.swc") == nt.read(tmp_path / "mine.swc")
+    assert nt.read("~/mine.swc", format="swc").name == "mine"
+    with pytest.raises(nt.MissingFileError, match="there is no such file"):
+        nt.read(tmp_path / "none.swc", format="swc")
+    with pytest.raises(IsADirectoryError, match="is a folder: neurotess.mesh_many takes one"):
+        nt.read(tmp_path)
+    monkeypatch.setitem(sys.modules, "fsspec", None)
+    with pytest.raises(ImportError, match="pip install fsspec"):
+        nt.read("https://example.org/cell.swc")
+
+
+def test_addresses_are_read_by_fsspec(samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of fsspec only what is used: `open`."""
+    content = {"s3://cells/granule.swc": (samples / "granule.swc").read_bytes()}
+
+    def opened(address: str, mode: str) -> io.BytesIO:
+        if address not in content:
+            raise FileNotFoundError(address)
+        assert mode == "rb"
+        return io.BytesIO(content[address])
+
+    monkeypatch.setitem(sys.modules, "fsspec", types.SimpleNamespace(open=opened))
+    cell = nt.read("s3://cells/granule.swc")
+    assert cell.name == "granule" and cell == nt.read(samples / "granule.swc")
+    with pytest.raises(FileNotFoundError, match="s3://cells/none.swc: there is no such file"):
+        nt.read("s3://cells/none.swc")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 
 from . import _neurotess, _options
-from ._errors import OptionError, missing_file
-from ._morphology import Morphology, _read, _warn, read
+from ._errors import NeurotessWarning, OptionError, missing_file
+from ._morphology import Morphology, _warn
+from ._sources import cell_of, package_of, read_cell
 from ._words import with_given
 
 TYPE_CHECKING = False
@@ -17,7 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    Source = Morphology | str | os.PathLike[str]
+    from ._meshing import Source
+
     Axis = Literal["x", "y", "z"]
     Spines = float | Literal["file"] | os.PathLike[str] | str | ArrayLike
 
@@ -44,7 +47,7 @@ def edit(
     rotate: Mapping[Axis, float] | Iterable[tuple[Axis, float]] | None = None,
     mirror: Axis | Iterable[Axis] | None = None,
 ) -> Morphology:
-    """A mended copy of a cell: of a `Morphology`, or of a file. The cell itself stays as it is.
+    """A mended copy of a cell: of a `Morphology`, or of what `mesh` takes. The cell itself stays as it is.
 
     The options are those of ``neurotess convert``, and are applied in this order, whatever their order in the call.
     Lengths are µm after `units` or `scale`; samples are the file's own numbers (`Morphology.samples`).
@@ -124,13 +127,17 @@ def edit(
         edits = _neurotess.Edits(words)
     except OptionError as error:
         raise with_given(error, given) from None
-    if isinstance(cell, Morphology):
-        read = cell._cell
+    if isinstance(cell, Morphology) or package_of(cell):
+        known = cell_of(cell)
     else:
-        read = _read(cell, None, None, False, bad_radii=edits.mends_radii)
-        _warn(read)
-    edited, reports = edits.apply(read, synapses)
-    return Morphology(edited, tuple(reports))
+        known = Morphology(read_cell(cell, None, None, False, bad_radii=edits.mends_radii))
+        _warn(known._cell)
+    edited, reports = edits.apply(known._cell, synapses)
+    if known.connectors is not None and reports:
+        lost = f"{known.name}: its connectors are left out, since samples may have other numbers and places now"
+        warnings.warn(NeurotessWarning(lost), stacklevel=2)
+    connectors = None if reports else known.connectors
+    return Morphology(edited, tuple(reports), known.id, connectors)
 
 
 def _words(name: str, values: Iterable[object]) -> list[str]:
@@ -186,5 +193,5 @@ def diff(
     """
     if samples is not None and samples < 0:
         raise ValueError(f"samples={samples} is not 0 or more")
-    cells = [cell if isinstance(cell, Morphology) else read(cell) for cell in (first, second)]
+    cells = [cell_of(cell) for cell in (first, second)]
     return _neurotess.diff(cells[0]._cell, cells[1]._cell, float(tolerance), samples)

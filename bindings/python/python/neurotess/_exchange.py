@@ -13,30 +13,37 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def to_navis(points: Any, name: str) -> Any:
+def to_navis(points: Any, name: str, id: Any, connectors: Any) -> Any:
     """`points`: as `Morphology.to_table` gives them."""
     navis = needed("navis")
     pandas = needed("pandas")
     names = {"id": "node_id", "type": "label", "parent": "parent_id"}
     table = pandas.DataFrame(points).rename(columns=names)
     soma = table.loc[table.label == 1, "node_id"]
-    neuron = navis.TreeNeuron(table, units="1 micrometer", name=name)
+    named = {} if id is None else {"id": id}
+    neuron = navis.TreeNeuron(table, units="1 micrometer", name=name, **named)
+    if connectors is not None:
+        neuron.connectors = connectors.copy()
     if len(soma):
         neuron.soma = int(soma.iloc[0])
     return neuron
 
 
-def from_navis(neuron: Any) -> tuple[Any, str]:
-    """A table as `Morphology.from_table` takes it, and a name."""
+def from_navis(neuron: Any) -> tuple[Any, str, Any]:
+    """A table as `Morphology.from_table` takes it, a name, and connectors (µm)."""
     table = neuron.nodes[["node_id", "label", "x", "y", "z", "radius", "parent_id"]].copy()
     # Labels are of any kind in navis; those that are no SWC types are undefined.
     pandas = needed("pandas")
     table["label"] = pandas.to_numeric(table["label"], errors="coerce").fillna(0).astype("int64")
+    connectors = getattr(neuron, "connectors", None)
+    connectors = None if connectors is None else connectors.copy()
     units = getattr(neuron, "units", None)
     if units is not None and not getattr(units, "dimensionless", True):
         scale = float(units.to("micrometer").magnitude)
         for column in ("x", "y", "z", "radius"):
             table[column] = table[column] * scale
+            if connectors is not None and column in connectors:
+                connectors[column] = connectors[column] * scale
     else:
         told = f"{neuron.name or 'the neuron'} has no units: its lengths are taken as µm"
         warnings.warn(NeurotessWarning(told), stacklevel=3)
@@ -45,7 +52,7 @@ def from_navis(neuron: Any) -> tuple[Any, str]:
         import numpy as np
 
         table.loc[table["node_id"].isin(np.atleast_1d(soma)), "label"] = 1
-    return table, str(neuron.name or "navis")
+    return table, str(neuron.name or "navis"), connectors
 
 
 def to_morphio(cell: _neurotess.Cell) -> Any:
@@ -59,7 +66,7 @@ def to_morphio(cell: _neurotess.Cell) -> Any:
     return morphio.Morphology(text, extension=format, options=option)
 
 
-def from_morphio(morphology: Any, strict: bool) -> _neurotess.Cell:
+def from_morphio(morphology: Any, name: str, strict: bool) -> _neurotess.Cell:
     import numpy as np
 
     morphio = needed("morphio")
@@ -105,7 +112,7 @@ def from_morphio(morphology: Any, strict: bool) -> _neurotess.Cell:
         z,
         column(soma_radii, np.asarray(morphology.diameters) / 2, float),
         column(soma_parents, parents, np.int64),
-        "morphio",
+        name,
         strict,
     )
 
@@ -118,4 +125,4 @@ def to_neurom(cell: _neurotess.Cell, name: str) -> Any:
 
 
 def from_neurom(morphology: Any, strict: bool) -> _neurotess.Cell:
-    return from_morphio(morphology.to_morphio(), strict)
+    return from_morphio(morphology.to_morphio(), str(morphology.name or "neurom"), strict)

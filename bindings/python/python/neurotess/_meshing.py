@@ -7,19 +7,22 @@ from collections import deque
 
 from . import _neurotess, _options
 from ._meshes import Mesh
-from ._morphology import Morphology, _read, read
 from ._parts import Notice
+from ._sources import cell_of, files_of, is_alone, quietly
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal, TypedDict
+    from typing import Any, Literal, TypeAlias, TypedDict
 
     import numpy as np
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
-    Source = Morphology | str | os.PathLike[str]
+    from ._morphology import File, Morphology
+
+    # Cells of navis, MorphIO and NeuroM, too.
+    Source: TypeAlias = Morphology | File | Any
 
     class MeshOptions(TypedDict, total=False):
         """The options of `mesh`."""
@@ -79,7 +82,8 @@ def mesh(
     quads: bool = False,
     threads: int | None = None,
 ) -> Mesh:
-    """Makes the closed surface of a cell: of a `Morphology`, or of a file.
+    """Makes the closed surface of a cell: of a `Morphology`, of what `read` takes, or of a cell of navis, MorphIO or
+    NeuroM.
 
     The options are those of ``neurotess mesh``.
 
@@ -148,9 +152,7 @@ def mesh(
         "quads": quads,
     }
     recipe = _options.recipe(options)
-    if not isinstance(cell, Morphology):
-        cell = read(cell)
-    return _mesh(recipe, cell, threads)
+    return _mesh(recipe, cell_of(cell), threads)
 
 
 def _mesh(
@@ -214,10 +216,11 @@ class MeshResult(Outcome):
 
 
 def mesh_many(
-    cells: Iterable[Source], *, threads: int | None = None, **options: Unpack[MeshOptions]
+    cells: Iterable[Source] | str | os.PathLike[str], *, threads: int | None = None, **options: Unpack[MeshOptions]
 ) -> Iterator[MeshResult]:
     """Meshes many cells or files on `threads` threads (all cores), with the options of `mesh`.
 
+    `cells` are what `mesh` takes, or a folder, of which all SWC, ASC, NeuroML and TRACES files are meshed.
     Gives a `MeshResult` for each cell, in their order. An error is a value: one bad file never ends the batch.
     Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
     ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only. Ctrl-C, and ``close()`` of the iterator,
@@ -231,6 +234,10 @@ def mesh_many(
     recipe = _options.recipe(options)
     if threads is not None and threads < 1:
         raise ValueError(f"threads={threads} is not 1 or more")
+    if isinstance(cells, (str, os.PathLike)):
+        cells = files_of(cells)
+    elif is_alone(cells):
+        cells = [cells]
     return _results(cells, recipe, threads or _cores())
 
 
@@ -248,9 +255,8 @@ def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -
 
     def one(cell: Source) -> MeshResult:
         try:
-            read = cell if isinstance(cell, Morphology) else Morphology(_read(cell, None, None, False))
             # A cell has one thread: all are busy with others.
-            return MeshResult(cell, _mesh(recipe, read, 1, stop), None)
+            return MeshResult(cell, _mesh(recipe, quietly(cell), 1, stop), None)
         except Exception as error:
             return MeshResult(cell, None, error)
 

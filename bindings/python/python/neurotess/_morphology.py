@@ -6,15 +6,20 @@ import os
 import warnings
 
 from . import _neurotess
-from ._errors import ReadError, ReadWarning, read_error
+from ._errors import ReadWarning
 from ._parts import Neurite, Notice, Section, Soma
+from ._sources import read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import IO, Any
+    from typing import IO, Any, TypeAlias, Union, overload
 
     import numpy as np
+    import pandas as pd
     from numpy.typing import NDArray
+
+    File: TypeAlias = Union[str, os.PathLike[str], bytes, IO[bytes], IO[str]]
+    Files: TypeAlias = Union[list[Any], tuple[Any, ...]]
 
 
 class Morphology:
@@ -32,11 +37,24 @@ class Morphology:
     edits: tuple[dict[str, Any], ...]
     """What each edit of `edit` changed, under the names of ``neurotess convert --json``; empty for other cells."""
 
-    def __init__(self, cell: _neurotess.Cell, edits: tuple[dict[str, Any], ...] = ()) -> None:
+    id: Any
+    """What navis calls it by, and is called back; None for other cells."""
+    connectors: pd.DataFrame | None
+    """Connectors (synapses) as navis has them, in µm; None for other cells."""
+
+    def __init__(
+        self,
+        cell: _neurotess.Cell,
+        edits: tuple[dict[str, Any], ...] = (),
+        id: Any = None,
+        connectors: pd.DataFrame | None = None,
+    ) -> None:
         if not isinstance(cell, _neurotess.Cell):
             raise TypeError("use neurotess.read, neurotess.synth or Morphology.from_table")
         self._cell = cell
         self.edits = edits
+        self.id = id
+        self.connectors = connectors
         self._columns: dict[str, NDArray[Any]] | None = None
         self._child_ids: list[list[int]] | None = None
         self._sections: tuple[Section, ...] | None = None
@@ -229,18 +247,23 @@ class Morphology:
     # Other packages
 
     def to_navis(self) -> Any:
-        """A `navis.TreeNeuron`, in µm."""
+        """A `navis.TreeNeuron`, in µm, with `id` and `connectors` where there are some."""
         from ._exchange import to_navis
 
-        return to_navis(self.to_table(), self.name)
+        return to_navis(self.to_table(), self.name, self.id, self.connectors)
 
     @classmethod
     def from_navis(cls, neuron: Any, *, strict: bool = False) -> Morphology:
-        """A cell of a `navis.TreeNeuron`, whose units are taken into account; without units it is in µm."""
+        """A cell of a `navis.TreeNeuron`, whose units are taken into account; without units it is in µm.
+
+        It has its name, `id` and `connectors`.
+        """
         from ._exchange import from_navis
 
-        table, name = from_navis(neuron)
-        return cls.from_table(table, name=name, strict=strict)
+        table, name, connectors = from_navis(neuron)
+        cell = cls.from_table(table, name=name, strict=strict)
+        cell.id, cell.connectors = neuron.id, connectors
+        return cell
 
     def to_morphio(self) -> Any:
         """A `morphio.Morphology`. MorphIO leaves out sections of a single point, and takes one soma only."""
@@ -249,11 +272,11 @@ class Morphology:
         return to_morphio(self._cell)
 
     @classmethod
-    def from_morphio(cls, morphology: Any, *, strict: bool = False) -> Morphology:
-        """A cell of a `morphio.Morphology`."""
+    def from_morphio(cls, morphology: Any, *, name: str = "morphio", strict: bool = False) -> Morphology:
+        """A cell of a `morphio.Morphology`, which has no name: give one."""
         from ._exchange import from_morphio
 
-        return _with_warnings(from_morphio(morphology, strict))
+        return _with_warnings(from_morphio(morphology, name, strict))
 
     def to_neurom(self) -> Any:
         """A `neurom.core.Morphology`."""
@@ -263,7 +286,7 @@ class Morphology:
 
     @classmethod
     def from_neurom(cls, morphology: Any, *, strict: bool = False) -> Morphology:
-        """A cell of a `neurom.core.Morphology`."""
+        """A cell of a `neurom.core.Morphology`, with its name."""
         from ._exchange import from_neurom
 
         return _with_warnings(from_neurom(morphology, strict))
@@ -277,25 +300,39 @@ class Morphology:
         return hash((self.name, len(self)))
 
     def __reduce__(self) -> tuple[type[Morphology], tuple[object, ...]]:
-        return type(self), (self._cell, self.edits)
+        return type(self), (self._cell, self.edits, self.id, self.connectors)
 
     def __repr__(self) -> str:
         neurites = len(self.neurites)
         return f"<Morphology {self.name!r}: {len(self)} points, {neurites} neurites>"
 
 
+if TYPE_CHECKING:
+
+    @overload
+    def read(
+        source: Files, *, format: str | None = None, name: str | None = None, strict: bool = False
+    ) -> list[Morphology]: ...
+
+    @overload
+    def read(
+        source: File, *, format: str | None = None, name: str | None = None, strict: bool = False
+    ) -> Morphology: ...
+
+
 def read(
-    source: str | os.PathLike[str] | bytes | IO[bytes] | IO[str],
+    source: File | Files,
     *,
     format: str | None = None,
     name: str | None = None,
     strict: bool = False,
-) -> Morphology:
+) -> Morphology | list[Morphology]:
     """Reads a morphology: SWC, Neurolucida ASC or XML, Blue Brain's H5, NeuroML, SNT's traces, skeletons of
     webKnossos and KNOSSOS, and JSON of MouseLight and CATMAID.
 
-    `source` is a path, the bytes of a file, or an open file. ``merged.h5#cells/a`` is one morphology of an H5
-    file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``, ...) is for bytes and open files
+    `source` is a path (``~`` is your folder), the bytes of a file, an open file, or an address (``https://…``,
+    ``s3://…``), which needs fsspec; of a list of these it is a list of cells. ``merged.h5#cells/a`` is one morphology of
+    an H5 file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``, ...) is for bytes and open files
     whose content does not tell it, and `name` is what errors call them.
 
     What is odd in the file is warned of (`ReadWarning`), and stays in `Morphology.warnings`. With `strict` it
@@ -308,34 +345,9 @@ def read(
     >>> cell.soma
     <Soma: point, radius 5 µm>
     """
-    return _with_warnings(_read(source, format, name, strict))
-
-
-def _read(
-    source: Any, format: str | None, name: str | None, strict: bool, *, bad_radii: bool = False
-) -> _neurotess.Cell:
-    """Reads a cell; with `bad_radii`, radii that are no numbers are 0."""
-    if isinstance(source, (str, os.PathLike)):
-        if format is None:
-            return _neurotess.Cell.read(source, strict, bad_radii)
-        path = os.fspath(source)
-        try:
-            with open(path, "rb") as file:
-                return _read(file, format, name or path, strict)
-        except OSError as error:
-            if isinstance(error, ReadError):
-                raise
-            raise read_error(path, None, str(error), error.errno) from None
-    if hasattr(source, "read"):
-        name = name or getattr(source, "name", None)
-        source = source.read()
-    if isinstance(source, str):
-        source = source.encode()
-    if not isinstance(source, (bytes, bytearray, memoryview)):
-        raise TypeError(
-            f"a morphology is read from a path, bytes or an open file, not from {type(source).__name__}"
-        )
-    return _neurotess.Cell.read_bytes(bytes(source), str(name or "<bytes>"), format, strict)
+    if isinstance(source, (list, tuple)):
+        return [_with_warnings(read_cell(one, format, name, strict)) for one in source]
+    return _with_warnings(read_cell(source, format, name, strict))
 
 
 def _with_warnings(cell: _neurotess.Cell) -> Morphology:

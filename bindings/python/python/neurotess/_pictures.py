@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ._meshes import Mesh
-    from ._morphology import Morphology
+    from ._morphology import File, Morphology
     from ._nodes import Nodes
     from ._values import Values
 
     # Not "… | …" in quotes: who evaluates annotations could not add to a text.
-    Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", str, os.PathLike[str]]
+    Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", File, Any]
     ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
     Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
 
@@ -94,7 +94,7 @@ class Image:
 
 
 def render(
-    what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
+    what: Drawable | Iterable[Any],
     *,
     size: tuple[int, int] | None = None,
     color_by: ColorBy | None = None,
@@ -151,7 +151,8 @@ def render(
     gpu_memory: int | str | None = None,
     adapter: str | None = None,
 ) -> Image:
-    """Draws cells or a circuit, without a window: a cell, a file, several of them, or a `Circuit`.
+    """Draws cells or a circuit, without a window: a cell or a file (or whatever `mesh` takes), several of them,
+    or a `Circuit`.
 
     The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
 
@@ -250,7 +251,7 @@ def render(
 
 
 def film(
-    what: Drawable | Iterable[Morphology | str | os.PathLike[str]],
+    what: Drawable | Iterable[Any],
     *,
     turntable: bool = False,
     time: tuple[float, float, float] | tuple[float, float] | None = None,

@@ -7,13 +7,15 @@ import os
 from . import _neurotess, _options
 from ._errors import OptionError, RenderError, missing_file
 from ._meshes import Mesh
-from ._morphology import Morphology, read
+from ._sources import cell_of, is_alone
 from ._values import values_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
+
+    from ._morphology import Morphology
 
 #: What selects cells of a circuit.
 SELECTION = ("nodes", "node_set", "population", "region", "sample", "sample_seed")
@@ -50,12 +52,7 @@ def _cells(what: Any, options: dict[str, Any]) -> list[Morphology]:
     given = [name for name in SELECTION if options.get(name) is not None]
     if given:
         raise ValueError(f"{given[0]}= selects cells of a circuit, and none is drawn")
-    return [one if isinstance(one, Morphology) else read(one) for one in many]
-
-
-def is_alone(what: Any) -> bool:
-    """Whether it is one cell, and no list of them."""
-    return isinstance(what, (Morphology, str, os.PathLike))
+    return [cell_of(one) for one in many]
 
 
 def check_names(name: str, function: Callable[..., Any], options: dict[str, Any]) -> None:

@@ -15,7 +15,8 @@ from collections import namedtuple
 
 from . import __version__, _neurotess, _options
 from ._meshing import _mesh
-from ._morphology import Morphology, _read
+from ._morphology import Morphology
+from ._sources import read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def make(task: tuple[str, str, str, dict[str, Any]]) -> Made:
         key = _key(content, name, recipe)
         if os.path.exists(path) and _recorded(record) == key:
             return Made(file, path, None, True)
-        cell = Morphology(_read(content, _format(file), file, False))
+        cell = Morphology(read_cell(content, _format(file), file, False))
         made = _mesh(recipe, cell, 1)
         made.save(path)
         _replace(record, json.dumps({"of": file, "key": key}))

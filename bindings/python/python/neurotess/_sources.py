@@ -1,0 +1,130 @@
+"""What a cell may be given as: a `Morphology`, a file or its content, or a cell of another package."""
+
+from __future__ import annotations
+
+import os
+
+from . import _neurotess
+from ._errors import ReadError, read_error
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ._morphology import Morphology
+
+#: Extensions of tracings that a folder is searched for; of others a folder has many that are none.
+EXTENSIONS = ("swc", "eswc", "asc", "nml", "traces", "swc.gz", "asc.gz")
+
+
+def cell_of(source: Any) -> Morphology:
+    """The cell; what is odd in a file is warned of."""
+    from ._morphology import Morphology, read
+
+    if isinstance(source, Morphology):
+        return source
+    package = package_of(source)
+    if package is None:
+        return read(source)
+    return _from_package(source, package)
+
+
+def quietly(source: Any) -> Morphology:
+    """The cell, without warnings: they are in `Morphology.warnings`."""
+    from ._morphology import Morphology
+
+    if isinstance(source, Morphology) or package_of(source):
+        return cell_of(source)
+    return Morphology(read_cell(source, None, None, False))
+
+
+def _from_package(source: Any, package: str) -> Morphology:
+    from ._morphology import Morphology
+
+    if package == "navis" and not hasattr(source, "nodes"):
+        kind = type(source).__name__
+        raise TypeError(f"a {kind} of navis has no tracing: a TreeNeuron is needed (of a list, use neurotess.mesh_many)")
+    if package == "navis":
+        return Morphology.from_navis(source)
+    return Morphology.from_morphio(source) if package == "morphio" else Morphology.from_neurom(source)
+
+
+def package_of(source: Any) -> str | None:
+    """The package that a cell is of, if it is one that we know."""
+    for base in type(source).__mro__:
+        package = base.__module__.partition(".")[0]
+        if package in ("navis", "morphio", "neurom"):
+            return package
+    return None
+
+
+def is_alone(source: Any) -> bool:
+    """Whether it is one cell, and no list of them."""
+    from ._morphology import Morphology
+
+    if isinstance(source, (Morphology, str, os.PathLike, bytes)) or hasattr(source, "read"):
+        return True
+    return package_of(source) is not None and type(source).__name__ != "NeuronList"
+
+
+def files_of(path: str | os.PathLike[str]) -> list[str]:
+    """The tracings of a folder, in the order of their names; a file alone."""
+    path = expanded(path)
+    if not os.path.isdir(path):
+        return [path]
+    names = sorted(os.listdir(path))
+    found = [name for name in names if name.lower().endswith(tuple(f".{end}" for end in EXTENSIONS))]
+    if not found:
+        raise ReadError(path, None, f"has no tracings: no file ends in .{', .'.join(EXTENSIONS)}")
+    return [os.path.join(path, name) for name in found]
+
+
+def expanded(path: str | os.PathLike[str]) -> str:
+    """A path as text; ``~`` is the user's folder."""
+    text = os.fspath(path)
+    return os.path.expanduser(text) if text.startswith("~") else text
+
+
+def read_cell(
+    source: Any, format: str | None, name: str | None, strict: bool, *, bad_radii: bool = False
+) -> _neurotess.Cell:
+    """Reads a cell; with `bad_radii`, radii that are no numbers are 0."""
+    if isinstance(source, (str, os.PathLike)):
+        path = expanded(source)
+        if "://" in path:
+            return read_cell(_fetched(path), format, name or path.rpartition("/")[2], strict)
+        if format is None:
+            return _neurotess.Cell.read(path, strict, bad_radii)
+        try:
+            with open(path, "rb") as file:
+                return read_cell(file, format, name or path, strict)
+        except OSError as error:
+            if isinstance(error, ReadError):
+                raise
+            raise read_error(path, None, str(error), error.errno) from None
+    if hasattr(source, "read"):
+        name = name or getattr(source, "name", None)
+        source = source.read()
+    if isinstance(source, str):
+        source = source.encode()
+    if not isinstance(source, (bytes, bytearray, memoryview)):
+        raise TypeError(
+            f"a morphology is read from a path, bytes or an open file, not from {type(source).__name__}"
+        )
+    return _neurotess.Cell.read_bytes(bytes(source), str(name or "<bytes>"), format, strict)
+
+
+def _fetched(address: str) -> bytes:
+    """The content at an address, by fsspec."""
+    from ._packages import needed
+
+    try:
+        with needed("fsspec").open(address, "rb") as file:
+            content: bytes = file.read()
+            return content
+    except FileNotFoundError:
+        from ._errors import missing_file
+
+        raise missing_file(address) from None
+    except OSError as error:
+        raise read_error(address, None, str(error), None) from error
