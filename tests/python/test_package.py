@@ -6,6 +6,7 @@ import doctest
 import importlib
 import inspect
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -94,6 +95,64 @@ def test_the_reference_is_made_without_a_warning(tmp_path: Path) -> None:
     missing = [name for name in nt.__all__ if f'id="{name}"' not in page]
     assert missing == []
     assert "Plots" in (tmp_path / "neurotess/plot.html").read_text()
+
+
+@pytest.mark.full
+def test_the_page_runs_as_printed(
+    tmp_path: Path, can_draw: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for package in ("trimesh", "pyvista", "navis", "pandas", "matplotlib", "jupyter_rfb"):
+        pytest.importorskip(package)
+    import warnings
+
+    page = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    blocks = re.findall(r"^```(python|)\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nt.NeurotessWarning)
+        for language, text in blocks:
+            if language == "python":
+                exec(compile(text, text.splitlines()[0], "exec"), names)
+            elif text.startswith("neurotess "):
+                ran = python("-m", *text.split())
+                assert ran.returncode == 0, ran.stderr
+    assert sum(language == "python" for language, _ in blocks) >= 11
+    made = {path.name for path in tmp_path.iterdir()}
+    assert {"cell.glb", "cell.png", "cell.asc", "both.png", "turn.png", "meshes"} <= made
+    assert "none.swc: there is no such file" in capsys.readouterr().out
+
+
+#: What type checkers know in loops over batches.
+TYPED = """
+import neurotess as nt
+
+for result in nt.mesh_many(["cell.swc"], level=2):
+    if result:
+        result.mesh.save(f"{result.mesh.name}.ply")
+    else:
+        print(result.input, result.error.args)
+for one in nt.Circuit("circuit").mesh(node_set="L4", level=2):
+    if one.ok:
+        one.mesh.save(f"{one.population}_{one.node_id}.ply")
+cells: list[nt.Morphology] = nt.read(["a.swc", "b.swc"])
+cell: nt.Morphology = nt.read("a.swc")
+nt.render(cell, values={"section": [1.0, 2.0]}, title="current", unit="nA")
+nt.render(cells, values=[cells[0].radii, None])
+nt.Circuit("circuit").select([("cortex", 3)])
+"""
+
+
+@pytest.mark.full
+def test_types_hold_in_loops(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    settings = str(ROOT / "bindings/python/pyproject.toml")
+    (tmp_path / "typed.py").write_text(TYPED)
+    checked = python("-m", "mypy", "--config-file", settings, "--strict", str(tmp_path / "typed.py"))
+    assert checked.returncode == 0, checked.stdout
+    (tmp_path / "wrong.py").write_text(TYPED.replace("    if result:\n    ", "    if True:\n    "))
+    checked = python("-m", "mypy", "--config-file", settings, "--strict", str(tmp_path / "wrong.py"))
+    assert 'has no attribute "save"' in checked.stdout
 
 
 @pytest.mark.full

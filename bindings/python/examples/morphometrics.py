@@ -33,7 +33,7 @@ print(table[["cell", "n_points", "length", "soma.radius"]])
 
 # %% Meshes on all cores; what fails is told and does not end the batch.
 for result in nt.mesh_many(paths, level=2):
-    if result.mesh is None:
+    if not result.ok:
         print(f"{result.input}: {result.error}")
         continue
     mesh = result.mesh

@@ -44,7 +44,7 @@ from ._morphology import Morphology, read, synth
 from ._parts import Neurite, Notice, Section, Soma
 from ._edits import diff, edit
 from ._meshes import Mesh, check, read_mesh
-from ._meshing import MeshResult, mesh, mesh_many
+from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_many
 from ._circuits import Circuit
 from ._reports import Report
 from ._pictures import Image, film, render
@@ -58,12 +58,14 @@ if TYPE_CHECKING:
 # Without what needs other packages: `from neurotess import *` works everywhere.
 __all__ = [
     "Circuit",
+    "Failed",
     "FolderError",
     "ForbiddenFileError",
     "Image",
     "Mesh",
     "MeshError",
     "MeshResult",
+    "Meshed",
     "MissingFileError",
     "Morphology",
     "Neurite",

@@ -218,7 +218,7 @@ class Circuit(DrawnCircuit):
         sample_seed: int = 1,
         threads: int | None = None,
         **options: Unpack[MeshOptions],
-    ) -> Iterator[NodeMesh]:
+    ) -> Iterator[MeshedNode | FailedNode]:
         """Meshes cells in the coordinates of the circuit, with the options of `neurotess.mesh`.
 
         What selects cells is that of `select`. An error is a value, as in `mesh_many`. Nodes that share a
@@ -230,7 +230,7 @@ class Circuit(DrawnCircuit):
 
     def _meshes(
         self, rows: list[tuple[int, int]], recipe: _neurotess.Recipe, threads: int | None
-    ) -> Iterator[NodeMesh]:
+    ) -> Iterator[MeshedNode | FailedNode]:
         mesher = self._circuit.mesher(recipe)
         names = self.populations
         ids = [self._circuit.columns(i)["node_id"] for i in range(len(names))]
@@ -241,9 +241,9 @@ class Circuit(DrawnCircuit):
                 read: list[Notice] = []
                 placement = self._matrix(p, row)
                 mesh = _of(surface, report, read, f"{names[p]}_{node}", Morphology(cell), placement)
-                yield NodeMesh(names[p], node, mesh, None)
+                yield MeshedNode(names[p], node, mesh, None)
             except Exception as error:
-                yield NodeMesh(names[p], node, None, error)
+                yield FailedNode(names[p], node, None, error)
 
     # Recordings
 
@@ -269,7 +269,7 @@ class Circuit(DrawnCircuit):
 
 
 class NodeMesh(Outcome):
-    """A cell of `Circuit.mesh`: a mesh in the coordinates of the circuit, or the error that it met."""
+    """A cell of `Circuit.mesh`: a `MeshedNode` with a mesh in the coordinates of the circuit, or a `FailedNode`."""
 
     population: str
     """The population of the node."""
@@ -284,4 +284,30 @@ class NodeMesh(Outcome):
         self.node_id = node_id
 
     def __repr__(self) -> str:
-        return f"<NodeMesh {self.node_id} of {self.population!r}: {self._said()}>"
+        return f"<{type(self).__name__} {self.node_id} of {self.population!r}: {self._said()}>"
+
+
+class MeshedNode(NodeMesh):
+    """A cell of `Circuit.mesh` that was meshed."""
+
+    ok: Literal[True] = True
+    mesh: Mesh
+    error: None
+
+    __slots__ = ()
+
+    def __bool__(self) -> Literal[True]:
+        return True
+
+
+class FailedNode(NodeMesh):
+    """A cell of `Circuit.mesh` that could not be meshed, and why."""
+
+    ok: Literal[False] = False
+    mesh: None
+    error: Exception
+
+    __slots__ = ()
+
+    def __bool__(self) -> Literal[False]:
+        return False

@@ -179,6 +179,8 @@ def _of(
 class Outcome:
     """A mesh, or the error instead of it."""
 
+    ok: bool
+    """Whether there is a mesh."""
     mesh: Mesh | None
     """The mesh; none if there is an error."""
     error: Exception | None
@@ -190,38 +192,72 @@ class Outcome:
         self.mesh = mesh
         self.error = error
 
-    @property
-    def ok(self) -> bool:
-        """Whether there is a mesh."""
-        return self.error is None
-
     def _said(self) -> str:
         return repr(self.mesh if self.ok else self.error)
 
 
 class MeshResult(Outcome):
-    """What became of a cell in `mesh_many`: a mesh, or the error that it met."""
+    """What became of a cell in `mesh_many`: `Meshed` or `Failed`."""
 
-    input: Source
+    input: Any
     """What was to be meshed."""
 
     __slots__ = ("input",)
 
-    def __init__(self, input: Source, mesh: Mesh | None, error: Exception | None) -> None:
+    def __init__(self, input: Any, mesh: Mesh | None, error: Exception | None) -> None:
         super().__init__(mesh, error)
         self.input = input
 
     def __repr__(self) -> str:
-        return f"<MeshResult {self.input!r}: {self._said()}>"
+        return f"<{type(self).__name__} {self.input!r}: {self._said()}>"
+
+
+class Meshed(MeshResult):
+    """A cell of `mesh_many` that was meshed."""
+
+    ok: Literal[True] = True
+    mesh: Mesh
+    error: None
+
+    __slots__ = ()
+
+    def __bool__(self) -> Literal[True]:
+        return True
+
+    def __init__(self, input: Any, mesh: Mesh) -> None:
+        super().__init__(input, mesh, None)
+
+    def __reduce__(self) -> tuple[type[Meshed], tuple[Any, Mesh]]:
+        return type(self), (self.input, self.mesh)
+
+
+class Failed(MeshResult):
+    """A cell of `mesh_many` that could not be meshed, and why."""
+
+    ok: Literal[False] = False
+    mesh: None
+    error: Exception
+
+    __slots__ = ()
+
+    def __bool__(self) -> Literal[False]:
+        return False
+
+    def __init__(self, input: Any, error: Exception) -> None:
+        super().__init__(input, None, error)
+
+    def __reduce__(self) -> tuple[type[Failed], tuple[Any, Exception]]:
+        return type(self), (self.input, self.error)
 
 
 def mesh_many(
     cells: Iterable[Source] | str | os.PathLike[str], *, threads: int | None = None, **options: Unpack[MeshOptions]
-) -> Iterator[MeshResult]:
+) -> Iterator[Meshed | Failed]:
     """Meshes many cells or files on `threads` threads (all cores), with the options of `mesh`.
 
     `cells` are what `mesh` takes, or a folder, of which all SWC, ASC, NeuroML and TRACES files are meshed.
-    Gives a `MeshResult` for each cell, in their order. An error is a value: one bad file never ends the batch.
+    Gives a `Meshed` or `Failed` for each cell, in their order, of which ``ok`` tells which it is. An error is a value: one
+    bad file never ends the batch.
     Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
     ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only. Ctrl-C, and ``close()`` of the iterator,
     stop the work.
@@ -248,17 +284,17 @@ def _cores() -> int:
         return os.cpu_count() or 1
 
 
-def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[MeshResult]:
+def _results(cells: Iterable[Source], recipe: _neurotess.Recipe, threads: int) -> Iterator[Meshed | Failed]:
     from concurrent.futures import ThreadPoolExecutor
 
     stop = _neurotess.Stop()
 
-    def one(cell: Source) -> MeshResult:
+    def one(cell: Source) -> Meshed | Failed:
         try:
             # A cell has one thread: all are busy with others.
-            return MeshResult(cell, _mesh(recipe, quietly(cell), 1, stop), None)
+            return Meshed(cell, _mesh(recipe, quietly(cell), 1, stop))
         except Exception as error:
-            return MeshResult(cell, None, error)
+            return Failed(cell, error)
 
     pool = ThreadPoolExecutor(threads, thread_name_prefix="neurotess")
     waiting: deque[Any] = deque()
