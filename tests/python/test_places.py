@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import pickle
+import sys
 from pathlib import Path
+from typing import Any
 
 import neurotess as nt
 import numpy as np
@@ -93,8 +96,109 @@ def test_attributes_of_ones_own_are_handed_over(mesh: nt.Mesh, tmp_path: Path) -
         mesh.with_attribute("section", mesh.section)
     with pytest.raises(ValueError, match=f"each of the {len(mesh.vertices)} vertices"):
         mesh.with_attribute("short", [1, 2, 3])
+    with pytest.raises(ValueError, match="letters, digits and _"):
+        mesh.with_attribute("my voltage", mesh.radius)
+    with pytest.raises(ValueError, match="up to four"):
+        mesh.with_attribute("wide", np.zeros((len(mesh.vertices), 5)))
     with pytest.raises(ValueError, match="not numbers"):
         mesh.with_attribute("names", ["a"] * len(mesh.vertices))
+
+
+def glb_of(file: Path) -> tuple[dict[str, Any], bytes]:
+    """The JSON and the binary chunk."""
+    content = file.read_bytes()
+    length = int.from_bytes(content[12:16], "little")
+    assert len(content) == int.from_bytes(content[8:12], "little")
+    return json.loads(content[20 : 20 + length]), content[28 + length :]
+
+
+def accessor(document: dict[str, Any], binary: bytes, name: str) -> np.ndarray:
+    found = document["accessors"][document["meshes"][0]["primitives"][0]["attributes"][name]]
+    view = document["bufferViews"][found["bufferView"]]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[found["type"]]
+    values = np.frombuffer(binary, "<f4", found["count"] * width, view["byteOffset"])
+    return values.reshape(-1, width)
+
+
+def test_files_hold_attributes_of_ones_own(mesh: nt.Mesh, tmp_path: Path) -> None:
+    ours = mesh.with_attribute("distance", mesh.path_distance).with_attribute("ends", mesh.vertices[:, :2])
+    for name in ("cell.ply", "cell.vtu", "cell.glb"):
+        ours.save(tmp_path / name)
+        read = nt.read_mesh(tmp_path / name)
+        assert (read.section == mesh.section).all() and (read.faces == mesh.faces).all() and read.closed
+    header, _, rows = (tmp_path / "cell.ply").read_bytes().partition(b"end_header\n")
+    assert b"property float radius\nproperty float distance\nproperty float ends_0\nproperty float ends_1\n" in header
+    table = np.frombuffer(rows, "<f4", 13 * len(mesh.vertices)).reshape(-1, 13)
+    assert (table[:, 10] == mesh.path_distance.astype(np.float32)).all()
+    assert (table[:, 11:] == mesh.vertices[:, :2].astype(np.float32)).all()
+    document, binary = glb_of(tmp_path / "cell.glb")
+    assert (accessor(document, binary, "_DISTANCE")[:, 0] == mesh.path_distance.astype(np.float32)).all()
+    with pytest.warns(nt.NeurotessWarning, match="cell.stl has no distance, ends: PLY, VTU and GLB"):
+        ours.save(tmp_path / "cell.stl")
+
+
+def test_colors_of_a_glb_are_those_of_an_attribute(mesh: nt.Mesh, tmp_path: Path) -> None:
+    file = tmp_path / "cell.glb"
+    ramp = np.linspace(0, 1, len(mesh.vertices))
+    ramp[0] = np.nan
+    ours = mesh.with_attribute("ramp", ramp)
+
+    def colors(**options: object) -> np.ndarray:
+        ours.save(file, **options)  # type: ignore[arg-type]
+        return accessor(*glb_of(file), "COLOR_0")
+
+    # Black to white is linear in light after sRGB's curve.
+    gray = colors(color="ramp", colormap=["#000000", "#ffffff"])
+    assert gray.shape == (len(mesh.vertices), 4) and (gray[:, 3] == 1).all()
+    assert gray[0, :3] == pytest.approx([0.3515] * 3, abs=1e-3) and gray[-1, :3].tolist() == [1, 1, 1]
+    middle = np.nanargmin(np.abs(ramp - 0.5))
+    assert gray[middle, 0] == pytest.approx(0.214, abs=2e-3)
+    assert colors(color="radius")[:, :3].std() > 0
+    half = colors(color="ramp", colormap=["#000000", "#ffffff"], range=(0, 0.5))
+    assert (half[ramp > 0.5, :3] == 1).all()
+    direct = np.column_stack([ramp, ramp, ramp])
+    direct[0] = 0
+    ours = mesh.with_attribute("paint", direct)
+    assert colors(color="paint")[-1].tolist() == [1, 1, 1, 1]
+    with pytest.raises(ValueError, match="color='way': the mesh has 'type'"):
+        colors(color="way")
+    with pytest.raises(ValueError, match="a GLB has colors"):
+        ours.save(tmp_path / "cell.ply", color="paint")
+
+
+def test_color_maps_are_ours_or_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    from neurotess._colormaps import scale_of
+
+    assert len(scale_of("viridis")) > 100 and scale_of("viridis")[0].tolist() == [68, 1, 84]
+    matplotlib = pytest.importorskip("matplotlib")
+    theirs = scale_of("coolwarm")
+    assert theirs.shape == (256, 3) and (scale_of(matplotlib.colormaps["coolwarm"]) == theirs).all()
+    apart = np.abs(scale_of(matplotlib.colormaps["viridis"])[[0, -1]].astype(int) - scale_of("viridis")[[0, -1]])
+    assert apart.max() <= 2
+    assert scale_of([(0.0, 0.0, 1.0), "#ff0000"]).tolist() == [[0, 0, 255], [255, 0, 0]]
+    assert scale_of(np.array([[0, 0, 255], [255, 0, 0]])).tolist() == [[0, 0, 255], [255, 0, 0]]
+    for wrong in ("no_such_map", ["#ff0000"], 3, [["a", "b"]], ["red", "blue"]):
+        with pytest.raises(nt.OptionError, match="colormap=.*'viridis'"):
+            scale_of(wrong)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(nt.OptionError, match="where matplotlib is installed"):
+        scale_of("coolwarm")
+
+
+@pytest.mark.full
+def test_other_programs_read_attributes_of_ones_own(mesh: nt.Mesh, tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    meshio = pytest.importorskip("meshio")
+    ours = mesh.with_attribute("distance", mesh.path_distance)
+    for name in ("cell.vtu", "cell.ply"):
+        ours.save(tmp_path / name)
+        theirs = meshio.read(tmp_path / name)
+        assert np.ravel(theirs.point_data["distance"]) == pytest.approx(mesh.path_distance, abs=1e-3)
+        assert (np.ravel(theirs.point_data["section"]) == mesh.section).all()
+    ours.save(tmp_path / "cell.glb", color="distance", colormap="magma")
+    theirs = trimesh.load(tmp_path / "cell.glb", force="mesh", process=False)
+    assert theirs.vertex_attributes["_DISTANCE"].ravel() == pytest.approx(mesh.path_distance, abs=1e-3)
+    assert theirs.visual.kind == "vertex" and len(np.unique(theirs.visual.vertex_colors, axis=0)) > 20
 
 
 @pytest.mark.full
@@ -146,6 +250,8 @@ def test_values_color_points_samples_and_sections(cell: nt.Morphology) -> None:
     assert (drawn(by_point, range=(0, 100)) != first).any()
     titled = np.asarray(nt.render(cell, values=by_point, title="current", unit="nA", size=(300, 200), samples=1))
     assert (titled != np.asarray(nt.render(cell, values=by_point, size=(300, 200), samples=1))).any()
+    assert (drawn(by_point, colormap="magma") != first).any()
+    assert (drawn(by_point, colormap=["#ff0000", "#ff0000"]) != first).any()
     both = np.asarray(nt.render([cell, cell], values=[by_point, None], **SMALL))
     assert both.shape == first.shape
     frames = list(nt.film(cell, turntable=True, frames=2, values=by_point, **SMALL))

@@ -3,4 +3,4 @@
 
 pub use crate::commands::convert::EditRecipe;
 #[cfg(feature = "render")]
-pub use crate::commands::render::{DrawError, Drawing, DrawingInput, Picked};
+pub use crate::commands::render::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};

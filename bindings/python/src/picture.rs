@@ -11,8 +11,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{CellValues, OwnValues};
+use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
-use neurotess_cli::embed::{self, DrawError, DrawingInput};
+use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -27,6 +28,7 @@ use crate::work::{Stop, released, stoppable};
 /// Adds what draws to the module.
 pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Drawing>()?;
+    module.add_function(wrap_pyfunction!(color_scale, module)?)?;
     module.add_function(wrap_pyfunction!(png, module)?)
 }
 
@@ -91,9 +93,11 @@ impl Drawing {
         circuit: Option<(PathBuf, Option<Vec<(u32, u32)>>)>,
         options: Vec<String>,
         values: Option<GivenValues<'_>>,
+        scale: Option<Vec<Rgb>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
         let values = values.map(own_values).transpose()?;
+        let colors = DrawingColors { values, scale };
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
         let made = stoppable(py, None, &Stop::default(), move |stopped| {
             let gpu = device(adapter)?;
@@ -107,8 +111,7 @@ impl Drawing {
                 Some((path, _)) => DrawingInput::Circuit(path, nodes.as_deref()),
                 None => DrawingInput::Cells(&named),
             };
-            let (drawing, messages) =
-                embed::Drawing::new(&gpu, input, options, values.as_ref(), stopped)?;
+            let (drawing, messages) = embed::Drawing::new(&gpu, input, options, colors, stopped)?;
             Ok((gpu, drawing, messages))
         })?;
         let (gpu, drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
@@ -219,6 +222,12 @@ impl Drawing {
         let pixels = Array3::from_shape_vec(shape, image.pixels).map_err(bug)?;
         Ok(PyArray3::from_owned_array(py, pixels).unbind())
     }
+}
+
+/// The colors of a color map; none if there is none of this name.
+#[pyfunction]
+fn color_scale(name: &str) -> Option<Vec<Rgb>> {
+    name.parse::<ColorMap>().ok().map(ColorMap::scale)
 }
 
 /// The bytes of a PNG file.

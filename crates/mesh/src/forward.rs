@@ -45,6 +45,11 @@ macro_rules! forward_surface {
             self.$under.soundness()
         }
     };
+    (@ $under:tt attributes) => {
+        fn attributes(&self) -> &[$crate::VertexAttribute<'_>] {
+            self.$under.attributes()
+        }
+    };
     (@ $under:tt vertices) => {
         fn vertices(&self, block: usize, out: &mut Vec<$crate::SurfaceVertex>) {
             self.$under.vertices(block, out);

@@ -20,7 +20,7 @@ impl<'a> InUnit<'a> {
 
 impl Surface for InUnit<'_> {
     forward_surface!(
-        placed: origin regions soundness vertex_count triangle_count quad_count
+        placed: origin regions soundness attributes vertex_count triangle_count quad_count
         vertex_blocks face_blocks faces vertices
     );
 

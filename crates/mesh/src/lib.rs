@@ -77,7 +77,7 @@ pub use placed::Placed;
 pub use quality::{Quality, quality};
 pub use read::{FilePosition, ReadError, read, read_as, read_bytes};
 pub use sound::{Extent, Soundness, Unsound};
-pub use surface::{Faces, Region, Surface, SurfaceMesh, SurfaceVertex};
+pub use surface::{Faces, Region, Surface, SurfaceMesh, SurfaceVertex, VertexAttribute};
 pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};
 pub use unit::Unit;

@@ -33,7 +33,7 @@ impl<'a> Placed<'a> {
 }
 
 impl Surface for Placed<'_> {
-    forward_surface!(surface: unit vertex_count triangle_count quad_count vertex_blocks face_blocks faces);
+    forward_surface!(surface: unit attributes vertex_count triangle_count quad_count vertex_blocks face_blocks faces);
 
     fn origin(&self) -> DVec3 {
         self.origin

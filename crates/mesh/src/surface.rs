@@ -32,6 +32,17 @@ pub struct Faces {
     pub quads: Vec<[u32; 4]>,
 }
 
+/// Numbers of one's own, for each vertex of a surface. PLY, VTU and GLB hold them, as 32-bit floating-point numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexAttribute<'a> {
+    /// Its name: letters, digits and `_`. A GLB has it with `_` before, but for `COLOR_0`.
+    pub name: &'a str,
+    /// Numbers of a vertex: 1 to 4.
+    pub components: usize,
+    /// Those of all vertices, in their order.
+    pub values: &'a [f32],
+}
+
 /// A part of the inside of a surface with walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
@@ -59,6 +70,10 @@ pub trait Surface: Sync {
     /// What its vertices are checked against, for surfaces that know their tracing: what is unsound is not written.
     fn soundness(&self) -> Option<Soundness> {
         None
+    }
+    /// Numbers of one's own for its vertices.
+    fn attributes(&self) -> &[VertexAttribute<'_>] {
+        &[]
     }
     /// Number of vertices of all blocks.
     fn vertex_count(&self) -> usize;

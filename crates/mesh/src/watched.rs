@@ -32,7 +32,7 @@ impl<'a> Watched<'a> {
 
 impl Surface for Watched<'_> {
     forward_surface!(
-        surface: origin unit regions soundness vertex_count triangle_count
+        surface: origin unit regions soundness attributes vertex_count triangle_count
         quad_count vertex_blocks face_blocks faces
     );
 

@@ -7,6 +7,7 @@ import warnings
 
 from . import _neurotess
 from ._errors import NeurotessWarning
+from ._own import check_name, color_column, holds_own, own_column
 from ._parts import Notice
 from ._packages import needed
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from ._colormaps import Colormap
     from ._morphology import Morphology
     from ._places import OnLines
     from ._reports import Report
@@ -192,7 +194,8 @@ class Mesh:
         return {**self._built_in(), **self._own}
 
     def with_attribute(self, name: str, values: ArrayLike) -> Mesh:
-        """A copy with numbers of your own for each vertex, (v,) or (v, n), which `to_trimesh` and `to_pyvista` hand over.
+        """A copy with numbers of your own for each vertex, (v,) or (v, n) with up to four: `to_trimesh` and `to_pyvista`
+        hand them over, and PLY, VTU and GLB hold them.
 
         It shares all arrays with this mesh.
 
@@ -204,12 +207,12 @@ class Mesh:
         """
         import numpy as np
 
-        if name in self._built_in():
-            raise ValueError(f"name={name!r} is an attribute that every mesh has: choose another name")
+        check_name(name)
         column = np.array(values)
-        if column.ndim not in (1, 2) or len(column) != len(self.vertices):
+        if column.ndim not in (1, 2) or len(column) != len(self.vertices) or column[:1].size > 4:
             raise ValueError(
-                f"values of {name!r} have shape {column.shape}: one for each of the {len(self.vertices)} vertices is needed"
+                f"values of {name!r} have shape {column.shape}: one for each of the {len(self.vertices)} vertices is "
+                "needed, or up to four"
             )
         if column.dtype.kind not in "fiub":
             raise ValueError(f"values of {name!r} are not numbers, but {column.dtype}")
@@ -272,6 +275,9 @@ class Mesh:
         unit: Literal["um", "m"] = "um",
         overwrite: bool = True,
         materials: bool = False,
+        color: str | None = None,
+        colormap: Colormap = "viridis",
+        range: tuple[float, float] | None = None,
     ) -> None:
         """Writes a file, whole or not at all: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH.
 
@@ -280,11 +286,20 @@ class Mesh:
 
         ``materials=True`` gives faces of a GLB or OBJ the colors of their types, of an OBJ in an ``.mtl`` file beside it.
         Some programs then read a mesh for each type, none of which is closed.
+
+        PLY, VTU and GLB hold attributes of your own (`with_attribute`), as 32-bit numbers; in a GLB they are called like
+        ``_DISTANCE``. With the name of an attribute as `color`, vertices of a GLB have colors by its numbers (``COLOR_0``),
+        which all programs show: of a `colormap`, whose ends are at the numbers of `range`. An attribute (v, 3) or (v, 4) of
+        numbers from 0 to 1 is colors itself.
         """
-        if self._own:
-            told = f"{os.fspath(path)} has no {', '.join(self._own)}: files hold type, point, section and radius only"
+        kind = format or os.path.splitext(os.fspath(path))[1]
+        own = [own_column(name, values) for name, values in self._own.items()]
+        if own and not holds_own(kind):
+            told = f"{os.fspath(path)} has no {', '.join(self._own)}: PLY, VTU and GLB hold attributes of your own"
             warnings.warn(NeurotessWarning(told), stacklevel=2)
-        self._surface.write(path, format, unit, overwrite, materials)
+        if color is not None:
+            own.append(color_column(self.attributes, color, kind, colormap, range))
+        self._surface.write(path, format, unit, overwrite, materials, own)
 
     def to_trimesh(self) -> Any:
         """A `trimesh.Trimesh` with `attributes` as vertex attributes.

@@ -19,6 +19,7 @@ __all__ = [
     "Report",
     "Drawing",
     "diff",
+    "color_scale",
     "png",
     "main",
 ]
@@ -134,7 +135,15 @@ class Surface:
     def check(self, merge: bool) -> dict[str, Any]: ...
     def topology(self) -> tuple[bool, int, int]: ...
     def measure(self) -> tuple[float, float]: ...
-    def write(self, path: _Path, format: str | None, unit: str, overwrite: bool, materials: bool) -> None: ...
+    def write(
+        self,
+        path: _Path,
+        format: str | None,
+        unit: str,
+        overwrite: bool,
+        materials: bool,
+        own: list[tuple[str, int, NDArray[np.float32]]],
+    ) -> None: ...
     @staticmethod
     def restore(
         vertices: NDArray[np.float64],
@@ -216,6 +225,7 @@ class Drawing:
         circuit: tuple[_Path, list[tuple[int, int]] | None] | None,
         options: list[str],
         values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
+        scale: list[list[int]] | None,
         adapter: str | None,
     ) -> Drawing: ...
     @property
@@ -228,4 +238,5 @@ class Drawing:
     def pick(self, view: _View, size: list[int], at: list[float], reach: float) -> dict[str, Any] | None: ...
     def close(self) -> None: ...
 
+def color_scale(name: str) -> list[Any] | None: ...
 def png(pixels: NDArray[np.uint8], transparent: bool) -> bytes: ...

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ._colormaps import Colormap
     from ._meshes import Mesh
     from ._morphology import File, Morphology
     from ._nodes import Nodes
@@ -106,7 +107,7 @@ def render(
     time: float | None = None,
     range: tuple[float, float] | None = None,
     palette: str | os.PathLike[str] | Mapping[str, str] | None = None,
-    colormap: str | None = None,
+    colormap: Colormap | None = None,
     trim_colormap: bool = False,
     legend: bool = True,
     scale_bar: bool | float = False,
@@ -162,7 +163,8 @@ def render(
     Colors: `color_by`; `values` of your own, with a `title` and a `unit` for the legend: an array with a number for each
     of ``cell.points``, of the rows of ``cell.to_table()`` (with the soma's) or of ``cell.sections``; as in
     ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
-    `time` (ms); `range`, `colormap`, `trim_colormap`; `palette`: a name, a file, or colors of your own by the name
+    `time` (ms); `range`; `colormap`: a name, one of matplotlib's, or a list of colors from low to high; `trim_colormap`;
+    `palette`: a name, a file, or colors of your own by the name
     of a type or of anything else in the legend, as in ``{"axon": "#ff8800", "L5_PC": "#2ca02c"}``, over those of the
     palette called ``"base"``.
 

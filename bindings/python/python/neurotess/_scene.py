@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from . import _neurotess, _options
+from ._colormaps import is_own, scale_of
 from ._errors import OptionError, RenderError, missing_file
 from ._meshes import Mesh
 from ._sources import cell_of, is_alone
@@ -89,6 +90,7 @@ def drawing_of(
     else:
         cells, circuit = _cells(what, options), None
     values = values_of(cells, is_alone(what), options)
+    scale = _own_scale(options)
     meshes = options.pop("meshes", None)
     for name, is_file in (("points", True), ("report", circuit is not None)):
         if is_file and options.get(name) is not None:
@@ -98,11 +100,23 @@ def drawing_of(
         options["mesh"] = _mesh_words(meshes, folder)
         words = _options.arguments(options)
         try:
-            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, values, adapter)
+            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, values, scale, adapter)
         except OptionError as error:
             from ._words import with_given
 
             raise with_given(error, given) from None
+
+
+def _own_scale(options: dict[str, Any]) -> list[list[int]] | None:
+    """Takes a color map that is not one of ours from the options: its colors."""
+    colormap = options.get("colormap")
+    if colormap is None or is_own(colormap):
+        return None
+    if options.get("trim_colormap"):
+        raise ValueError("trim_colormap= is for the color maps of neurotess: leave it out")
+    del options["colormap"]
+    scale: list[list[int]] = scale_of(colormap).tolist()
+    return scale
 
 
 def _check_file(path: str | os.PathLike[str]) -> None:

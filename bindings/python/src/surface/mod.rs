@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use neurotess::mesh::{self, Format, SurfaceMesh, Unit, Watched, measure_surface};
+use neurotess::mesh::{self, Format, SurfaceMesh, Unit, VertexAttribute, Watched, measure_surface};
 use neurotess::morphology::Morphology;
 use neurotess::recipe::{
     CellMesh, FileOptions, FileSurface, MeshOptions, MeshReport, SaveError, Spelling, Watch,
@@ -132,10 +132,25 @@ impl Surface {
         })
     }
 
+    /// Number of vertices.
+    fn count(&self, py: Python<'_>) -> usize {
+        self.types.bind(py).len().unwrap_or(0)
+    }
+
     /// Does something with the arrays, without the interpreter's lock.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
+        work: impl FnOnce(&Slices<'_>) -> T + Send,
+    ) -> PyResult<T> {
+        self.with_own(py, Vec::new(), work)
+    }
+
+    /// The same with numbers of one's own.
+    fn with_own<T: Send>(
+        &self,
+        py: Python<'_>,
+        own: Vec<VertexAttribute<'_>>,
         work: impl FnOnce(&Slices<'_>) -> T + Send,
     ) -> PyResult<T> {
         let vertices = self.vertices.bind(py).readonly();
@@ -156,6 +171,7 @@ impl Surface {
             radii: radii.as_slice()?,
             triangles: faces.as_slice()?.as_chunks().0,
             quads: quads.as_slice()?.as_chunks().0,
+            own,
         };
         Ok(py.detach(|| work(&slices)))
     }
@@ -232,7 +248,9 @@ impl Surface {
         Ok((measure.volume, measure.area))
     }
 
-    /// Writes a file, whole or not at all, and one of materials beside an OBJ that has them.
+    /// Writes a file, whole or not at all, and one of materials beside an OBJ that has them. `own`: by name the components
+    /// and numbers of one's own.
+    #[expect(clippy::too_many_arguments, reason = "the options of a file")]
     fn write(
         &self,
         py: Python<'_>,
@@ -241,6 +259,7 @@ impl Surface {
         unit: &str,
         overwrite: bool,
         materials: bool,
+        own: Vec<(String, usize, PyReadonlyArray1<'_, f32>)>,
     ) -> PyResult<()> {
         let format = match format {
             Some(name) => format_named(&name)?,
@@ -261,7 +280,21 @@ impl Surface {
         options
             .check(&MeshOptions::default())
             .map_err(|e| PyValueError::new_err(e.told(Spelling::Keyword)))?;
-        self.with(py, |slices| {
+        let mut attributes = Vec::with_capacity(own.len());
+        for (name, components, values) in &own {
+            let values = values.as_slice()?;
+            if !(1..=4).contains(components) || values.len() != components * self.count(py) {
+                return Err(PyValueError::new_err(
+                    "these numbers are not of the vertices",
+                ));
+            }
+            attributes.push(VertexAttribute {
+                name,
+                components: *components,
+                values,
+            });
+        }
+        self.with_own(py, attributes, |slices| {
             let watch = Watch::default();
             let surface = FileSurface::new(slices, &options, &watch);
             let saved = surface.and_then(|s| s.save(&path, existing(overwrite), &watch));
@@ -313,6 +346,7 @@ impl Surface {
             radii: radii.as_slice()?,
             triangles: faces.as_slice()?.as_chunks().0,
             quads: quads.as_slice()?.as_chunks().0,
+            own: Vec::new(),
         };
         if !slices.agree() {
             return Err(PyValueError::new_err("these arrays are no mesh"));

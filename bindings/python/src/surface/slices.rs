@@ -1,7 +1,7 @@
 //! The arrays of a mesh as a surface again, without copying them.
 
 use glam::{DVec3, Vec3};
-use neurotess::mesh::{Faces, Surface, SurfaceVertex};
+use neurotess::mesh::{Faces, Surface, SurfaceVertex, VertexAttribute};
 
 use super::columns::Columns;
 
@@ -19,6 +19,8 @@ pub(super) struct Slices<'a> {
     pub(super) radii: &'a [f32],
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) quads: &'a [[u32; 4]],
+    /// Numbers of one's own.
+    pub(super) own: Vec<VertexAttribute<'a>>,
 }
 
 impl Slices<'_> {
@@ -70,6 +72,10 @@ impl Slices<'_> {
 impl Surface for Slices<'_> {
     fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    fn attributes(&self) -> &[VertexAttribute<'_>] {
+        &self.own
     }
 
     fn vertex_count(&self) -> usize {

@@ -17,7 +17,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use serde_json::{Value, json};
 
 use super::materials::type_color;
-use super::{File, WriteError, record, split};
+use super::{File, WriteError, push_numbers, record, split};
 use crate::face_types::{TypesOfGroups, VertexTypes};
 use crate::palette::linear;
 use crate::{Faces, Format, Surface, region_name};
@@ -42,6 +42,17 @@ pub struct GlbNode {
     pub world_from_surface: DAffine3,
 }
 
+/// Types of accessors by their number of components.
+const SHAPES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
+
+/// A name as glTF wants those that are not its own.
+fn gltf_name(name: &str) -> String {
+    match name {
+        "COLOR_0" => name.into(),
+        name => format!("_{}", name.to_uppercase()),
+    }
+}
+
 /// Where the arrays of a surface lie in the binary chunk.
 struct Span {
     vertices: u64,
@@ -50,6 +61,8 @@ struct Span {
     first_index: u64,
     /// Of positions.
     bounds: [Vec3; 2],
+    /// Numbers of one's own: name, components, where they begin.
+    own: Vec<(String, usize, u64)>,
     /// Indices of each type, in the order of the primitives; none if there are no materials.
     kinds: BTreeMap<i32, u64>,
 }
@@ -81,15 +94,23 @@ pub(super) fn write_all(
         let faces = surface.triangle_count() as u64 + 2 * surface.quad_count() as u64;
         // As many as there is room for, with the longest name.
         let kinds = (i32::MIN..).take(if materials { ROOM } else { 0 });
+        let first_vertex = binary;
+        binary += STRIDE * vertices + 12 * faces;
+        let own = surface.attributes().iter().map(|a| {
+            let first = binary;
+            binary += 4 * a.values.len() as u64;
+            (gltf_name(a.name), a.components, first)
+        });
+        let own = own.collect();
         spans.push(Span {
             vertices,
-            first_vertex: binary,
+            first_vertex,
             indices: 3 * faces,
-            first_index: binary + STRIDE * vertices,
+            first_index: first_vertex + STRIDE * vertices,
             bounds: [Vec3::ZERO; 2],
+            own,
             kinds: kinds.map(|kind| (kind, 3 * faces)).collect(),
         });
-        binary += STRIDE * vertices + 12 * faces;
     }
     let origins: Vec<DVec3> = surfaces.iter().map(|surface| surface.origin()).collect();
     loop {
@@ -158,6 +179,12 @@ fn write_surface(
         },
     )?;
     span.bounds = bounds.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut bytes = Vec::new();
+    for (attribute, (_, _, first)) in surface.attributes().iter().zip(&span.own) {
+        bytes.clear();
+        push_numbers(&mut bytes, attribute.values);
+        file.put(&mut (start + first), &bytes)?;
+    }
     span.kinds.clear();
     if materials {
         let runs = runs(surface, &types.finish(), file)?;
@@ -277,9 +304,15 @@ fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
     if shown.is_empty() {
         return json!({ "asset": asset, "scene": 0, "scenes": [{}] });
     }
+    let own = |s: &Span| {
+        s.own
+            .iter()
+            .map(|(_, n, _)| 4 * *n as u64 * s.vertices)
+            .sum::<u64>()
+    };
     let bytes: u64 = spans
         .iter()
-        .map(|s| STRIDE * s.vertices + 4 * s.indices)
+        .map(|s| STRIDE * s.vertices + 4 * s.indices + own(s))
         .sum();
     let mut root = json!({
         "asset": asset,
@@ -342,15 +375,27 @@ impl Arrays {
                 "count": span.vertices, "type": kind,
             }));
         }
+        let mut attributes = json!({
+            "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
+            "_SECTION": first + 4, "_RADIUS": first + 5,
+        });
+        for (name, components, start) in &span.own {
+            attributes[name] = json!(self.accessors.len());
+            self.accessors.push(json!({
+                "bufferView": self.views.len(), "componentType": FLOAT, "count": span.vertices,
+                "type": SHAPES[components.clamp(&1, &4) - 1],
+            }));
+            self.views.push(json!({
+                "buffer": 0, "byteOffset": start,
+                "byteLength": 4 * *components as u64 * span.vertices, "target": ARRAY_BUFFER,
+            }));
+        }
         let [low, high] = span.bounds;
         self.accessors[first]["min"] = json!(low.to_array());
         self.accessors[first]["max"] = json!(high.to_array());
         let primitive = |indices: Option<usize>, material: Option<usize>| {
             let mut primitive = json!({
-                "attributes": {
-                    "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
-                    "_SECTION": first + 4, "_RADIUS": first + 5,
-                },
+                "attributes": attributes,
                 "mode": if indices.is_some() { TRIANGLES } else { POINTS },
             });
             if let Some(indices) = indices {

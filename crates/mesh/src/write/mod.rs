@@ -31,7 +31,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 #[cfg(doc)]
-use crate::FaceLabel;
+use crate::{FaceLabel, VertexAttribute};
 use crate::{Faces, Format, Surface, SurfaceVertex, Unsound, Watched};
 use in_order::in_order;
 
@@ -71,7 +71,7 @@ pub enum WriteError {
     /// A bug of the surface: its blocks hold not what it announced.
     #[error("the surface announced {announced} {what} but its blocks hold {found}")]
     Inconsistent {
-        /// Vertices, triangles or quads.
+        /// Vertices, triangles, quads or numbers.
         what: &'static str,
         /// The count asked for beforehand.
         announced: usize,
@@ -84,12 +84,12 @@ pub enum WriteError {
 ///
 /// | format | encoding | positions | attributes | quads |
 /// | --- | --- | --- | --- | --- |
-/// | PLY | binary, little endian | f32; f64 if the origin is not zero | all | kept |
+/// | PLY | binary, little endian | f32; f64 if the origin is not zero | all, and [one's own](VertexAttribute) | kept |
 /// | OBJ | text | shortest that reads back exactly | normals; type of each face | kept |
 /// | STL | binary | f32 | facet normals | split |
-/// | GLB | binary | f32, the origin is the node's translation | all; a material for each type | split |
+/// | GLB | binary | f32, the origin is the node's translation | all, and one's own; a material for each type | split |
 /// | OFF | text | shortest that reads back exactly | none | kept |
-/// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all | kept |
+/// | VTU | XML, raw binary | f32; f64 if the origin is not zero | all, and one's own | kept |
 /// | MSH | binary, little endian | f64 | type and section of each face | split |
 /// | MSH 2.2 | text | shortest that reads back exactly | type and section of each face | split |
 /// | POLY, SMESH | text | shortest that reads back exactly | type of each face | split |
@@ -121,6 +121,10 @@ pub fn write_with<W: Write + Seek>(
     }
     let watched = Watched::new(surface);
     let surface: &dyn Surface = &watched;
+    for attribute in surface.attributes() {
+        let announced = attribute.components * surface.vertex_count();
+        agree("numbers of an attribute", announced, attribute.values.len())?;
+    }
     let mut file = File::begin(out)?;
     let mut kinds = BTreeSet::new();
     match format {
@@ -229,6 +233,18 @@ impl<'a> File<'a> {
         places: &mut [u64; N],
         encode: impl Fn(Range<usize>, &[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
     ) -> Result<(), WriteError> {
+        self.vertices_as(surface, encode, |file, _, buffers| {
+            file.put_all(places, buffers)
+        })
+    }
+
+    /// Encodes all vertices group by group and takes them in order; `take` is told which vertices a group has.
+    fn vertices_as<const N: usize>(
+        &mut self,
+        surface: &dyn Surface,
+        encode: impl Fn(Range<usize>, &[SurfaceVertex], &mut [Vec<u8>; N]) + Sync,
+        mut take: impl FnMut(&mut Self, Range<usize>, &[Vec<u8>; N]) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
         let announced = surface.vertex_count();
         let groups = groups(surface.vertex_blocks(), announced);
         // Room of groups that were written, to be used again.
@@ -249,8 +265,9 @@ impl<'a> File<'a> {
             if let Some(lost) = group.iter().position(|v| !v.position.is_finite()) {
                 return Err(WriteError::NotFinite(found + lost));
             }
+            let first = found;
             found += group.len();
-            self.put_all(places, &buffers)?;
+            take(self, first..found, &buffers)?;
             lock(&spare).push((group, buffers));
             Ok(())
         })?;
@@ -369,6 +386,11 @@ pub(crate) fn window() -> usize {
 /// The two triangles of a quad; the same diagonal as everywhere in this crate.
 fn split(&[a, b, c, d]: &[u32; 4]) -> [[u32; 3]; 2] {
     [[a, b, c], [a, c, d]]
+}
+
+/// Appends numbers as bytes.
+fn push_numbers(bytes: &mut Vec<u8>, numbers: &[f32]) {
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
 }
 
 /// Position + origin.

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-use super::{File, WriteError, absolute, record};
-use crate::Surface;
+use super::{File, WriteError, absolute, push_numbers, record};
+use crate::{Surface, SurfaceVertex, VertexAttribute};
 
 /// Bytes of a triangle: its count and three indices.
 const TRIANGLE: u64 = 13;
@@ -12,13 +12,16 @@ const TRIANGLE: u64 = 13;
 pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
     let origin = surface.origin();
     let double = origin != DVec3::ZERO;
+    let own = surface.attributes();
     let header = header(surface, double);
     let vertices = header.len() as u64;
-    let triangles = vertices + surface.vertex_count() as u64 * if double { 52 } else { 40 };
+    let row = if double { 52 } else { 40 };
+    let own_bytes: usize = own.iter().map(|a| 4 * a.components).sum();
+    let triangles = vertices + surface.vertex_count() as u64 * (row + own_bytes) as u64;
     let quads = triangles + surface.triangle_count() as u64 * TRIANGLE;
 
     file.put(&mut 0, header.as_bytes())?;
-    file.vertices(surface, &mut [vertices], |group, [bytes]| {
+    let encode = |group: &[SurfaceVertex], bytes: &mut Vec<u8>| {
         bytes.reserve(52 * group.len());
         for v in group {
             let n = v.normal;
@@ -32,7 +35,27 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
                     p.x, p.y, p.z, n.x, n.y, n.z, v.kind, v.point, v.section, v.radius]);
             }
         }
-    })?;
+    };
+    if own.is_empty() {
+        file.vertices(surface, &mut [vertices], |group, [bytes]| {
+            encode(group, bytes)
+        })?;
+    } else {
+        let (mut place, mut rows) = (vertices, Vec::new());
+        file.vertices_as(
+            surface,
+            |_, group, [bytes]| encode(group, bytes),
+            |file, group, [bytes]| {
+                rows.clear();
+                for (vertex, fixed) in group.zip(bytes.chunks_exact(row)) {
+                    rows.extend_from_slice(fixed);
+                    own.iter()
+                        .for_each(|a| push_numbers(&mut rows, of_vertex(a, vertex)));
+                }
+                file.put(&mut place, &rows)
+            },
+        )?;
+    }
     file.faces(
         surface,
         &mut [triangles, quads],
@@ -49,6 +72,22 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
     )
 }
 
+fn of_vertex<'a>(attribute: &VertexAttribute<'a>, vertex: usize) -> &'a [f32] {
+    let first = vertex * attribute.components;
+    &attribute.values[first..first + attribute.components]
+}
+
+/// The properties of numbers of one's own: several of a vertex are counted.
+fn own_properties(own: &[VertexAttribute<'_>]) -> String {
+    let names = own.iter().flat_map(|a| {
+        (0..a.components).map(|n| match a.components {
+            1 => format!("property float {}\n", a.name),
+            _ => format!("property float {}_{n}\n", a.name),
+        })
+    });
+    names.collect()
+}
+
 fn header(surface: &dyn Surface, double: bool) -> String {
     let real = if double { "double" } else { "float" };
     let (unit, vertices) = (surface.unit(), surface.vertex_count());
@@ -59,6 +98,7 @@ fn header(surface: &dyn Surface, double: bool) -> String {
     } else {
         "int"
     };
+    let own = own_properties(surface.attributes());
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\
@@ -69,6 +109,7 @@ fn header(surface: &dyn Surface, double: bool) -> String {
          property float nx\nproperty float ny\nproperty float nz\n\
          property int type\nproperty int point\nproperty int section\n\
          property float radius\n\
+         {own}\
          element face {faces}\n\
          property list uchar {index} vertex_indices\n\
          end_header\n"

@@ -1,12 +1,13 @@
 //! VTU, VTK's XML unstructured grid with appended raw data:
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 //!
-//! Nine arrays, each a 64-bit count of bytes and the data. Vertices fill six of them side by side.
+//! Nine arrays, each a 64-bit count of bytes and the data. Vertices fill six of them side by side. Numbers of one's own
+//! follow.
 
 use glam::DVec3;
 
-use super::{File, WriteError, absolute, record};
-use crate::{Surface, Unit};
+use super::{File, WriteError, absolute, push_numbers, record};
+use crate::{Surface, Unit, VertexAttribute};
 
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
@@ -33,7 +34,8 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         offsets[n + 1] = offsets[n] + 8 + size;
     }
 
-    let header = header(surface.unit(), vertices, cells, double, &offsets);
+    let own = surface.attributes();
+    let header = header(surface.unit(), vertices, cells, double, &offsets, own);
     let start = header.len() as u64;
     file.put(&mut 0, header.as_bytes())?;
     let data: [u64; 9] = std::array::from_fn(|n| start + offsets[n] + 8);
@@ -86,10 +88,13 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         },
     )?;
     cells_of(file, ends, types, triangles, quads)?;
-    file.put(
-        &mut (start + offsets[9]),
-        b"\n  </AppendedData>\n</VTKFile>\n",
-    )
+    let mut end = start + offsets[9];
+    for attribute in own {
+        let mut bytes = (4 * attribute.values.len() as u64).to_le_bytes().to_vec();
+        push_numbers(&mut bytes, attribute.values);
+        file.put(&mut end, &bytes)?;
+    }
+    file.put(&mut end, b"\n  </AppendedData>\n</VTKFile>\n")
 }
 
 /// Ends and types of cells: they follow from the counts.
@@ -116,7 +121,28 @@ fn cells_of(
     Ok(())
 }
 
-fn header(unit: Unit, vertices: u64, cells: u64, double: bool, offsets: &[u64; 10]) -> String {
+/// Arrays of numbers of one's own, from this offset on.
+fn own_arrays(own: &[VertexAttribute<'_>], mut offset: u64) -> String {
+    let array = |a: &VertexAttribute<'_>| {
+        let here = offset;
+        offset += 8 + 4 * a.values.len() as u64;
+        format!(
+            "\n        <DataArray type=\"Float32\" Name=\"{}\" NumberOfComponents=\"{}\" \
+             format=\"appended\" offset=\"{here}\"/>",
+            a.name, a.components
+        )
+    };
+    own.iter().map(array).collect()
+}
+
+fn header(
+    unit: Unit,
+    vertices: u64,
+    cells: u64,
+    double: bool,
+    offsets: &[u64; 10],
+    own: &[VertexAttribute<'_>],
+) -> String {
     let real = if double { "Float64" } else { "Float32" };
     let array = |n: usize, kind: &str, name: &str, components: usize| {
         format!(
@@ -136,7 +162,7 @@ fn header(unit: Unit, vertices: u64, cells: u64, double: bool, offsets: &[u64; 1
         {}
         {}
         {}
-        {}
+        {}{}
       </PointData>
       <Points>
         {}
@@ -155,6 +181,7 @@ fn header(unit: Unit, vertices: u64, cells: u64, double: bool, offsets: &[u64; 1
         array(3, "Int32", "point", 1),
         array(4, "Int32", "section", 1),
         array(5, "Float32", "radius", 1),
+        own_arrays(own, offsets[9]),
         array(0, real, "Points", 3),
         array(6, "Int64", "connectivity", 1),
         array(7, "Int64", "offsets", 1),

@@ -1,5 +1,6 @@
 //! Meshes, their files and checks.
 
+mod attributes;
 mod fuzz;
 mod independent;
 mod intersect;

@@ -71,7 +71,7 @@ fn passes(options: &FileOptions) -> (usize, usize) {
 
 impl Surface for Observed<'_> {
     forward_surface!(
-        surface: origin unit regions soundness vertex_count
+        surface: origin unit regions soundness attributes vertex_count
         triangle_count quad_count vertex_blocks face_blocks
     );
 

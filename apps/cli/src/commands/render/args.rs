@@ -116,6 +116,9 @@ pub(crate) struct RenderArgs {
         help_heading = "Colors"
     )]
     pub(crate) colormap: ColorMap,
+    /// Colors of numbers instead of a color map: of programs that have their own.
+    #[arg(skip)]
+    pub(crate) scale: Option<Vec<Rgb>>,
     /// Leave out the end of the color map that is as light or as dark as the background. Without it
     /// that end has edges
     #[arg(long, help_heading = "Colors")]
@@ -329,6 +332,15 @@ impl RenderArgs {
                 usage("--frames is for --turntable, and for --time FROM:TO")
             }
             _ => Ok(None),
+        }
+    }
+
+    /// Colors of numbers.
+    pub(crate) fn color_scale(&self, background: Option<Rgb>) -> Vec<Rgb> {
+        match (&self.scale, background.filter(|_| self.trim_colormap)) {
+            (Some(own), _) => own.clone(),
+            (None, Some(background)) => self.colormap.scale_before(background),
+            (None, None) => self.colormap.scale(),
         }
     }
 

@@ -139,10 +139,7 @@ pub(crate) fn of_pictures(
         palette: args.base_palette(),
         own_colors: args.own_colors(),
         background,
-        scale: match background.filter(|_| args.trim_colormap) {
-            Some(background) => args.colormap.scale_before(background),
-            None => args.colormap.scale(),
-        },
+        scale: args.color_scale(background),
         range: args.range,
     };
     let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();

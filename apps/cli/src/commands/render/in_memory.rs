@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{MarkerSet, OwnValues};
 use neurotess::morphology::{Morphology, SectionId, shape};
+use neurotess::render::color::Rgb;
 use neurotess::render::overlay::Overlay;
 use neurotess::render::{
     BoundingSphere, Camera, Gpu, Image, PictureOptions, Placement, StillRenderer, Viewpoint, Watch,
@@ -45,6 +46,15 @@ pub enum DrawingInput<'a> {
     Cells(&'a [(&'a str, &'a Morphology)]),
     /// A circuit, of which the options select cells; only of these, if some are listed.
     Circuit(&'a Path, Option<&'a [NodeRef]>),
+}
+
+/// Colors that options do not tell.
+#[derive(Clone, Debug, Default)]
+pub struct DrawingColors {
+    /// Numbers of the cells, which they are colored by.
+    pub values: Option<OwnValues>,
+    /// Colors of numbers, instead of a color map.
+    pub scale: Option<Vec<Rgb>>,
 }
 
 /// Why nothing is drawn.
@@ -93,8 +103,8 @@ pub struct Picked {
 }
 
 impl Drawing {
-    /// Reads, meshes and uploads what is to be drawn; cells may be colored by `values`. Returns what there is to say
-    /// about it, too. Ends soon after another thread sets `stopped`.
+    /// Reads, meshes and uploads what is to be drawn; `colors` go before those of the options. Returns what there is
+    /// to say about it, too. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
     /// Wrong options, inputs that fail, or a device that does.
@@ -102,16 +112,17 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         options: impl IntoIterator<Item = String>,
-        values: Option<&OwnValues>,
+        colors: DrawingColors,
         stopped: &Arc<AtomicBool>,
     ) -> Result<(Self, Vec<String>), DrawError> {
         let Options { mut args, common } = parsed(input, options)?;
         if let DrawingInput::Circuit(_, Some(nodes)) = input {
             args.cells.list(nodes);
         }
+        args.scale = colors.scale;
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
-        let made = Self::made(gpu, input, args, values, &reporter);
+        let made = Self::made(gpu, input, args, colors.values.as_ref(), &reporter);
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),

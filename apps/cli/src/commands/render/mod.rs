@@ -36,7 +36,7 @@ pub(crate) use args::{ColorBy, RenderArgs, color_maps, range};
 pub(crate) use cells::MeshedCell;
 pub(crate) use circuit_instances::CircuitInstances;
 pub(crate) use coloring::{by, stem};
-pub use in_memory::{DrawError, Drawing, DrawingInput, Picked};
+pub use in_memory::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};
 use job::RenderJob;
 use meshes::SceneMeshes;
 pub(crate) use palette::{PaletteArg, PaletteParser, SetColor};
