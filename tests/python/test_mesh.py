@@ -117,6 +117,8 @@ def test_no_option_of_the_command_is_missing() -> None:
     drawing |= {"mesh", "meshes"}
     # The command has no numbers of one's own.
     drawing |= {"values", "title", "unit"}
+    # Groups of the others.
+    drawing |= {"camera", "scene", "markers"}
     for command, function, other in [
         ("mesh", nt.mesh, files | circuit),
         ("render", nt.render, drawing),

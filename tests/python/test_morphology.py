@@ -119,6 +119,11 @@ def test_warnings_are_warned_of_and_are_data() -> None:
             nt.read(odd)
 
 
+def test_too_few_points_are_refused() -> None:
+    with pytest.raises(ValueError, match="points=3 is not 50 or more"):
+        nt.synth("granule", points=3)
+
+
 def test_cells_without_points_work() -> None:
     cell = nt.read(b"1 1 0 0 0 5 -1\n")
     assert cell.points.shape == (0, 3) and cell.parents.shape == (0,)

@@ -139,6 +139,29 @@ def test_wrong_options_are_value_errors(cell: nt.Morphology) -> None:
             nt.render(cell, **options)  # type: ignore[arg-type]
 
 
+def test_options_in_groups_are_those_outside(cell: nt.Morphology) -> None:
+    flat = nt.render(cell, view="iso", fov=25, background="black", legend=False, size=(96, 64), samples=1)
+    camera, scene = nt.Camera(view="iso", fov=25), nt.Scene(background="black", legend=False)
+    grouped = nt.render(cell, camera=camera, scene=scene, size=(96, 64), samples=1)
+    assert (np.asarray(flat) == np.asarray(grouped)).all()
+    [first, _] = nt.film(cell, turntable=True, frames=2, camera={"fov": 25}, scene=scene, size=(96, 64), samples=1)
+    assert first.size == (96, 64)
+    with pytest.raises(ValueError, match="camera= has no 'veiw': did you mean 'view'"):
+        nt.render(cell, camera={"veiw": "iso"}, **SMALL)  # type: ignore[typeddict-unknown-key]
+    with pytest.raises(ValueError, match="fov= is said twice"):
+        nt.render(cell, camera=camera, fov=30, **SMALL)
+    with pytest.raises(ValueError, match="marker_shape='cube': use 'point'"):
+        nt.render(cell, markers={"shape": "cube"}, **SMALL)  # type: ignore[typeddict-item]
+
+
+def test_types_of_options_are_those_of_the_functions() -> None:
+    import inspect
+
+    for function, typed in ((nt.render, nt.RenderOptions), (nt.mesh, nt.MeshOptions)):
+        parameters = set(inspect.signature(function).parameters) - {"what", "cell", "threads"}
+        assert parameters == set(typed.__annotations__)
+
+
 def test_adapters_that_are_not_there_are_render_errors(cell: nt.Morphology) -> None:
     with pytest.raises(nt.RenderError):
         nt.render(cell, adapter="no such adapter", **SMALL)

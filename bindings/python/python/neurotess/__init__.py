@@ -53,6 +53,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from . import dask as dask
     from . import plot as plot
+    from ._typed import Camera as Camera
+    from ._typed import Markers as Markers
+    from ._typed import MeshOptions as MeshOptions
+    from ._typed import RenderOptions as RenderOptions
+    from ._typed import Scene as Scene
+    from ._typed import SceneMesh as SceneMesh
     from ._view import View as View
 
 # Without what needs other packages: `from neurotess import *` works everywhere.
@@ -94,6 +100,10 @@ __all__ = [
 ]
 
 
+#: Types of options, which few need.
+TYPED = ("Camera", "Markers", "MeshOptions", "RenderOptions", "Scene", "SceneMesh")
+
+
 def __getattr__(name: str) -> object:
     # What needs other packages is imported when it is asked for.
     import importlib
@@ -102,11 +112,13 @@ def __getattr__(name: str) -> object:
         return importlib.import_module(f".{name}", __name__)
     if name == "View":
         return importlib.import_module("._view", __name__).View
+    if name in TYPED:
+        return getattr(importlib.import_module("._typed", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "View", "dask", "plot"]
+    return [*__all__, *TYPED, "View", "dask", "plot"]
 
 
 def quiet_adapters() -> None:

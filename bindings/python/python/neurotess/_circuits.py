@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
-    from ._meshing import MeshOptions
     from ._nodes import Nodes
+    from ._typed import MeshOptions, RenderOptions
 
 
 class Circuit(DrawnCircuit):
@@ -251,7 +251,7 @@ class Circuit(DrawnCircuit):
         """A report or a file of spikes: one that the configuration names, or a file."""
         return Report(self.reports.get(os.fspath(name), os.fspath(name)), circuit=self)
 
-    def render(self, **options: Any) -> Image:
+    def render(self, **options: Unpack[RenderOptions]) -> Image:
         """A picture of the circuit: `neurotess.render` with this circuit.
 
         A `time` without a `report` is of the first report with values.

@@ -13,44 +13,18 @@ from ._sources import cell_of, files_of, is_alone, quietly
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal, TypeAlias, TypedDict
+    from typing import Any, Literal, TypeAlias
 
     import numpy as np
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
     from ._morphology import File, Morphology
+    from ._typed import MeshOptions
 
     # Cells of navis, MorphIO and NeuroM, too.
     Source: TypeAlias = Morphology | File | Any
 
-    class MeshOptions(TypedDict, total=False):
-        """The options of `mesh`."""
-
-        level: int | None
-        max_error: float | None
-        level_along: int | None
-        isotropic: bool | float
-        max_edge: float | None
-        min_edge: float | None
-        max_aspect: float | None
-        path: Literal["hermite", "linear"] | None
-        caps: Literal["round", "flat"] | None
-        crossings: Literal["keep", "merge", "separate"] | None
-        simulation: bool
-        soma: Literal["fem", "sphere", "profile", "none"] | None
-        poisson: float | None
-        soma_scale: float | None
-        radii: Literal["traced", "equal-area", "equal-perimeter"] | None
-        radius_factor: float | None
-        radius: float | None
-        min_radius: float | None
-        soma_sphere: Literal["cube", "octahedron"] | None
-        soma_level: int | None
-        ring: Mapping[int, float] | None
-        smooth: float | Literal["auto"] | None
-        types: Sequence[str | int] | str | None
-        quads: bool
 
 
 def mesh(

@@ -369,7 +369,9 @@ def synth(
     """Grows a synthetic cell, the same for the same seed on every machine.
 
     `kind` is ``"pyramidal"``, ``"purkinje"``, ``"granule"``, ``"basket"``, ``"motor"`` or ``"star"``.
-    `points` outside the soma, 50 to 500,000, are usual for the kind if they are left out. Branches keep clear of
+    `points` outside the soma, 50 or more, are usual for the kind if they are left out. Branches keep clear of
     one another unless they `may_cross`.
     """
+    if points is not None and points < 50:
+        raise ValueError(f"points={points} is not 50 or more")
     return Morphology(_neurotess.Cell.grow(kind, seed, points, may_cross))

@@ -7,38 +7,21 @@ import warnings
 
 from . import _neurotess, _options
 from ._errors import NeurotessWarning, OptionError
+from ._groups import ungrouped
 from ._scene import DrawnCircuit, check_names, drawing_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Literal, TypeAlias, TypedDict, Union
+    from typing import Any, Literal
 
     import numpy as np
     from numpy.typing import NDArray
 
     from ._colormaps import Colormap
-    from ._meshes import Mesh
-    from ._morphology import File, Morphology
     from ._nodes import Nodes
+    from ._typed import Camera, ColorBy, Drawable, Markers, Meshes, Scene, Side
     from ._values import Values
-
-    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
-    Drawable: TypeAlias = Union[Morphology, "DrawnCircuit", File, Any]
-    ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
-    Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
-
-    class SceneMesh(TypedDict, total=False):
-        """A mesh beside the cells, and how it looks."""
-
-        mesh: Mesh | str | os.PathLike[str] | Any
-        color: str
-        opacity: float
-        edges: bool
-        scale: float
-        fit: bool
-
-    Meshes: TypeAlias = Union[Mesh, str, os.PathLike[str], SceneMesh, Iterable[Any]]
 
 
 class Image:
@@ -98,6 +81,9 @@ def render(
     what: Drawable | Iterable[Any],
     *,
     size: tuple[int, int] | None = None,
+    camera: Camera | None = None,
+    scene: Scene | None = None,
+    markers: Markers | None = None,
     color_by: ColorBy | None = None,
     color_by_attribute: str | None = None,
     values: Values | None = None,
@@ -157,6 +143,9 @@ def render(
 
     The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
 
+    Options of the camera, of what is around the cells, and of markers can be in groups: ``camera={"view": "iso", "fov":
+    30}``, ``scene={"background": "black", "scale_bar": True}``, ``markers={"synapses": True, "shape": "contact"}``.
+
     Picture: `size` (1280, 960), `background` (``"white"``, ``"#102030"``) or `transparent`, `samples` (16),
     `legend`, `scale_bar` (True, or a length in µm), `axes` (the directions of x, y and z).
 
@@ -194,6 +183,9 @@ def render(
     """
     options: dict[str, Any] = {
         "size": size,
+        "camera": camera,
+        "scene": scene,
+        "markers": markers,
         "color_by": color_by,
         "color_by_attribute": color_by_attribute,
         "values": values,
@@ -248,6 +240,7 @@ def render(
         "gpu_memory": gpu_memory,
         "adapter": adapter,
     }
+    options = ungrouped(options)
     _check_pairs(options)
     return next(_pictures(what, options))
 
@@ -269,6 +262,7 @@ def film(
     """
     series = {"turntable": turntable, "time": _options.joined(time, ":"), "frames": frames}
     check_names("film", render, options)
+    options = ungrouped(options)
     _check_pairs({**options, "time": time})
     if not turntable and time is None:
         raise ValueError("a film needs turntable=True, or time=(from, to, step)")

@@ -6,6 +6,7 @@ import math
 import warnings
 
 from ._errors import NeurotessWarning
+from ._groups import ungrouped
 from ._packages import needed
 from ._pictures import Image, render
 from ._scene import check_names, drawing_of
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
 
     from . import _neurotess
     # The second is a part of the first: who evaluates annotations looks for it here.
-    from ._pictures import Drawable
-    from ._scene import DrawnCircuit
+    from ._typed import Drawable
 
 needed("jupyter_rfb", "notebook")
 from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
@@ -91,7 +91,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         self._samples = samples
         self._adapter = adapter
         self._budget = budget
-        self._options = {**options, "orthographic": orthographic}
+        self._options = {"orthographic": orthographic, **ungrouped(options)}
         self._size = size
         self._ratio = 1.0
         self._moving = False

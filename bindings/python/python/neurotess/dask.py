@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from ._meshing import MeshOptions
+    from ._typed import MeshOptions
 
     class Made(NamedTuple):
         """What became of a file."""

@@ -4,8 +4,8 @@ use std::io::Cursor;
 
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{
-    Faces, Format, Surface, SurfaceMesh, SurfaceVertex, VertexAttribute, WriteError, forward_surface,
-    read_bytes, write,
+    Faces, Format, Surface, SurfaceMesh, SurfaceVertex, VertexAttribute, WriteError,
+    forward_surface, read_bytes, write,
 };
 
 /// A surface with numbers of one's own.
@@ -71,12 +71,19 @@ fn files_hold_numbers_of_ones_own_and_read_as_before() {
             let (before, after) = (written(&plain, format), written(&surface, format));
             let grown = after.len() - before.len();
             let numbers = 20 * COUNT as usize;
-            assert!((numbers..numbers + 1000).contains(&grown), "{format}: {grown}");
+            assert!(
+                (numbers..numbers + 1000).contains(&grown),
+                "{format}: {grown}"
+            );
             let read = |bytes: &[u8]| read_bytes(bytes, format).expect("read");
             assert_eq!(read(&after), read(&before), "{format}");
         }
         for format in [Format::Obj, Format::Stl, Format::Off] {
-            assert_eq!(written(&plain, format), written(&surface, format), "{format}");
+            assert_eq!(
+                written(&plain, format),
+                written(&surface, format),
+                "{format}"
+            );
         }
     }
 }
@@ -90,5 +97,12 @@ fn too_few_numbers_are_an_error() {
     };
     let surface = With(strip(5, DVec3::ZERO), vec![own]);
     let failed = write(&surface, Format::Ply, &mut Cursor::new(Vec::new()));
-    assert!(matches!(failed, Err(WriteError::Inconsistent { announced: 5, found: 1, .. })));
+    assert!(matches!(
+        failed,
+        Err(WriteError::Inconsistent {
+            announced: 5,
+            found: 1,
+            ..
+        })
+    ));
 }
