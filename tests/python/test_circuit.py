@@ -98,6 +98,14 @@ def test_sections_of_reports_are_those_of_meshes(circuit: nt.Circuit) -> None:
         rows = mesh.compartments(report, node)
         assert rows.min() >= 0 and (table.section.to_numpy()[rows] == mesh.section).all()
         assert report.at(report.times[0], node)[rows].shape == (len(mesh.vertices),)
+        table_rows = mesh.cell.compartments(report, node)
+        of_soma = len(mesh.cell.to_table()) - len(mesh.cell)
+        of_points = table.section.to_numpy()[table_rows]
+        assert (of_points[:of_soma] == 0).all()
+        numbers = [s.id + 1 for s in mesh.cell.sections for _ in s.points]
+        assert of_points[of_soma:].tolist() == numbers
+        # A vertex is not far from its sample.
+        assert (table_rows[mesh.sample_index] == rows).mean() > 0.8
         alone = nt.Report(report.path)
         assert list(alone.compartments(node).columns) == ["along", "neuron_section"]
         assert alone.compartments(node, cell=mesh.cell).equals(table)

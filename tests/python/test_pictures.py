@@ -73,7 +73,7 @@ def test_colors_of_ones_own_are_checked(cell: nt.Morphology, tmp_path: Path) -> 
     for palette, message in [
         ("mine", "palette's file"),
         (tmp_path / "bad.toml", "bad.toml:2: "),
-        ({"axon": (1, 0, 0)}, "'axon'"),
+        ({"axon": (1, 0)}, r"palette=\{'axon': …\}: \(1, 0\) is no color"),
         ({"axon": "reddish"}, "RRGGBB"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -137,6 +137,28 @@ def test_wrong_options_are_value_errors(cell: nt.Morphology) -> None:
     for options in ({"palette": "none.toml"}, {"points": "none.csv"}, {"meshes": "none.ply"}):
         with pytest.raises(nt.MissingFileError, match="none.*there is no such file"):
             nt.render(cell, **options)  # type: ignore[arg-type]
+
+
+def test_colors_are_named_by_css_or_numbers(cell: nt.Morphology) -> None:
+    from neurotess._colors import _named, text_of
+
+    colors = pytest.importorskip("matplotlib.colors").CSS4_COLORS
+    assert _named() == {k: v.lower() for k, v in colors.items() if k not in ("white", "black", "gray")}
+    assert text_of("RebeccaPurple") == "#663399" and text_of("#123456") == "#123456"
+    assert text_of((1.0, 0.5, 0.0)) == text_of((255, 128, 0)) == text_of(np.array([255, 128, 0])) == "#ff8000"
+    assert text_of((1, 0, 0)) == "#ff0000" and text_of((2, 0, 0)) == "#020000"
+    for wrong in ((1, 2), (300, 0, 0), 3, (0.5, None, 1)):
+        with pytest.raises(ValueError, match="is no color"):
+            text_of(wrong)
+
+    def drawn(**options: object) -> np.ndarray:
+        return np.asarray(nt.render(cell, legend=False, **SMALL, **options))  # type: ignore[arg-type]
+
+    named = drawn(palette={"axon": "darkorange", "soma": "navy"}, background="linen")
+    assert (named == drawn(palette={"axon": (255, 140, 0), "soma": "#000080"}, background=(250, 240, 230))).all()
+    around = nt.mesh(nt.synth("star", points=60), level=1)
+    by_name, by_number = (drawn(meshes={"mesh": around, "color": color}) for color in ("teal", (0, 128, 128)))
+    assert (by_name == by_number).all()
 
 
 def test_options_in_groups_are_those_outside(cell: nt.Morphology) -> None:

@@ -177,7 +177,8 @@ def test_color_maps_are_ours_or_others(monkeypatch: pytest.MonkeyPatch) -> None:
     assert apart.max() <= 2
     assert scale_of([(0.0, 0.0, 1.0), "#ff0000"]).tolist() == [[0, 0, 255], [255, 0, 0]]
     assert scale_of(np.array([[0, 0, 255], [255, 0, 0]])).tolist() == [[0, 0, 255], [255, 0, 0]]
-    for wrong in ("no_such_map", ["#ff0000"], 3, [["a", "b"]], ["red", "blue"]):
+    assert scale_of(["navy", "linen"]).tolist() == [[0, 0, 128], [250, 240, 230]]
+    for wrong in ("no_such_map", ["#ff0000"], 3, [["a", "b"]], ["red", "blu"]):
         with pytest.raises(nt.OptionError, match="colormap=.*'viridis'"):
             scale_of(wrong)
     monkeypatch.setitem(sys.modules, "matplotlib", None)

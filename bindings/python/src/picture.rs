@@ -66,6 +66,9 @@ pub(crate) struct Drawing {
 /// perspective.
 type View = ([f64; 3], [f64; 3], [f64; 3], f64, bool);
 
+/// A circuit, and population and row of the nodes that are drawn, if not all are.
+type GivenCircuit = (PathBuf, Option<Vec<(u32, u32)>>);
+
 /// By cell the numbers of its points and that of its somata; what they are, and their unit.
 type GivenValues<'py> = (Vec<(PyReadonlyArray1<'py, f32>, f32)>, String, String);
 
@@ -90,7 +93,7 @@ impl Drawing {
     fn new(
         py: Python<'_>,
         cells: Vec<PyRef<'_, Cell>>,
-        circuit: Option<(PathBuf, Option<Vec<(u32, u32)>>)>,
+        circuit: Option<GivenCircuit>,
         options: Vec<String>,
         values: Option<GivenValues<'_>>,
         scale: Option<Vec<Rgb>>,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import _neurotess
+from ._colors import text_of
 from ._errors import OptionError
 
 TYPE_CHECKING = False
@@ -72,12 +73,12 @@ def colored(values: NDArray[Any], colormap: Colormap, range: tuple[float, float]
 
 
 def _rgb(color: Any) -> Any:
-    if isinstance(color, str):
-        digits = color.removeprefix("#")
-        if len(digits) != 6:
-            raise ValueError(color)
-        return [int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4)]
-    return color
+    if not isinstance(color, str):
+        return color
+    digits = {"white": "ffffff", "black": "000000", "gray": "808080"}.get(color, text_of(color).removeprefix("#"))
+    if len(digits) != 6:
+        raise ValueError(color)
+    return [int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4)]
 
 
 def _bytes(colors: Any) -> NDArray[np.uint8]:
@@ -85,7 +86,7 @@ def _bytes(colors: Any) -> NDArray[np.uint8]:
     import numpy as np
 
     colors = np.asarray(colors)[:, :3]
-    if colors.dtype.kind in "iu":
+    if colors.dtype.kind in "iu" and colors.max(initial=0) > 1:
         return np.clip(colors, 0, 255).astype(np.uint8)
     return np.clip(np.round(colors * 255), 0, 255).astype(np.uint8)
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
+    from ._reports import Report
+
     File: TypeAlias = Union[str, os.PathLike[str], bytes, IO[bytes], IO[str]]
     Files: TypeAlias = Union[list[Any], tuple[Any, ...]]
 
@@ -192,6 +194,17 @@ class Morphology:
 
     def _point(self, index: int | None) -> int | None:
         return None if index is None else range(len(self))[index]
+
+    def compartments(self, report: Report, node: int) -> NDArray[np.int64]:
+        """For each row of `to_table` the nearest compartment of its section: the row of ``report.compartments(node)`` and
+        the column of ``report.values(node)``. −1 where the report has none of the section.
+
+        ``neurotess.render(cell, values=report.at(time, node)[cell.compartments(report, node)])`` shows a report without a
+        circuit.
+        """
+        from ._places import compartments_of
+
+        return compartments_of(self, *report._on(node), report)
 
     def measures(self) -> dict[str, Any]:
         """Counts, lengths, areas and volumes, under the names of ``neurotess info --json``.

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ._colormaps import Colormap
+    from ._colors import Color
     from ._nodes import Nodes
     from ._typed import Camera, ColorBy, Drawable, Markers, Meshes, Scene, Side
     from ._values import Values
@@ -92,13 +93,13 @@ def render(
     report: str | os.PathLike[str] | None = None,
     time: float | None = None,
     range: tuple[float, float] | None = None,
-    palette: str | os.PathLike[str] | Mapping[str, str] | None = None,
+    palette: str | os.PathLike[str] | Mapping[str, Color] | None = None,
     colormap: Colormap | None = None,
     trim_colormap: bool = False,
     legend: bool = True,
     scale_bar: bool | float = False,
     axes: bool = False,
-    background: str | None = None,
+    background: Color | None = None,
     transparent: bool = False,
     samples: int | None = None,
     view: Side | None = None,

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ._morphology import Morphology
+    from ._reports import Report
 
 #: The greatest number of a sample that meshes can have.
 MOST = 2**31 - 1
@@ -156,6 +157,23 @@ def path_distance(cell: Morphology, lines: OnLines, vertices: NDArray[np.float64
     away = np.stack([np.linalg.norm(vertices[~on] - soma.center, axis=1) for soma in somata], axis=1)
     told[~on] = np.where(away.argmin(axis=1) == 0, away[:, 0], np.inf)
     return told
+
+
+def compartments_of(
+    cell: Morphology, numbers: NDArray[np.int64], along: NDArray[np.floating[Any]], report: Report
+) -> NDArray[np.int64]:
+    """For each row of the cell's table the nearest compartment; `numbers`: sections as the report counts them."""
+    import numpy as np
+
+    columns = cell._section_columns()
+    counts = columns["end"] - columns["first"]
+    on_soma = len(cell.to_table()) - len(cell)
+    start, length = columns["path_length"] - columns["length"], np.maximum(columns["length"], 1e-9)
+    of_points = np.repeat(np.arange(len(counts)), counts)
+    share = np.clip((distances_from_root(cell) - start[of_points]) / length[of_points], 0.0, 1.0)
+    sections = np.append(np.zeros(on_soma, np.int64), of_points + 1)
+    places = np.append(np.full(on_soma, 0.5), share)
+    return nearest_compartments(report._sections_of(numbers, cell), along, sections, places)
 
 
 def nearest_compartments(

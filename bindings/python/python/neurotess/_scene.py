@@ -6,6 +6,7 @@ import os
 
 from . import _neurotess, _options
 from ._colormaps import is_own, scale_of
+from ._colors import text_of
 from ._errors import OptionError, RenderError, missing_file
 from ._meshes import Mesh
 from ._sources import cell_of, is_alone
@@ -137,6 +138,8 @@ def _mesh_words(meshes: Any, folder: str) -> list[str]:
         if "mesh" not in look:
             raise ValueError(f"{one!r} names no mesh: it needs a file or a mesh as 'mesh'")
         file = look.pop("mesh")
+        if "color" in look:
+            look["color"] = text_of(look["color"])
         if isinstance(file, (str, os.PathLike)):
             _check_file(file)
         else:
@@ -155,16 +158,22 @@ def _with_colors(options: dict[str, Any]) -> dict[str, Any]:
     """The options with a palette of one's own as those of the command line."""
     from collections.abc import Mapping
 
+    options = dict(options)
+    if options.get("background") is not None:
+        options["background"] = text_of(options["background"])
     palette = options.get("palette")
     if not isinstance(palette, Mapping):
         # A name of a palette has no extension.
         if isinstance(palette, (str, os.PathLike)) and os.path.splitext(palette)[1]:
             _check_file(palette)
-        return dict(options)
-    own = {str(name): color for name, color in palette.items()}
-    for name, color in own.items():
-        if not isinstance(color, str):
-            raise ValueError(f"the color of {name!r} is {color!r}: text is needed, as in '#ff8800'")
+        return options
+    # The palette that is beneath has a name.
+    own = {}
+    for name, color in palette.items():
+        try:
+            own[str(name)] = color if name == "base" else text_of(color)
+        except ValueError as error:
+            raise ValueError(f"palette={{{name!r}: …}}: {error}") from None
     background = options.get("background") or own.get("background")
     if options.get("transparent"):
         background = None

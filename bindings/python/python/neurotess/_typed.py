@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, Union
 
 if TYPE_CHECKING:
     from ._colormaps import Colormap
+    from ._colors import Color
     from ._meshes import Mesh
     from ._morphology import File, Morphology
     from ._nodes import Nodes
@@ -55,7 +56,7 @@ class SceneMesh(TypedDict, total=False):
     """A mesh beside the cells, and how it looks."""
 
     mesh: Mesh | str | os.PathLike[str] | Any
-    color: str
+    color: Color
     opacity: float
     edges: bool
     scale: float
@@ -76,7 +77,7 @@ class Camera(TypedDict, total=False):
 class Scene(TypedDict, total=False):
     """What is around the cells in `render`."""
 
-    background: str | None
+    background: Color | None
     transparent: bool
     light: str | Sequence[float] | None
     ao: float | None
@@ -112,13 +113,13 @@ class RenderOptions(TypedDict, total=False):
     report: str | os.PathLike[str] | None
     time: float | None
     range: tuple[float, float] | None
-    palette: str | os.PathLike[str] | Mapping[str, str] | None
+    palette: str | os.PathLike[str] | Mapping[str, Color] | None
     colormap: Colormap | None
     trim_colormap: bool
     legend: bool
     scale_bar: bool | float
     axes: bool
-    background: str | None
+    background: Color | None
     transparent: bool
     samples: int | None
     view: Side | None

@@ -38,7 +38,7 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
     };
     if own.is_empty() {
         file.vertices(surface, &mut [vertices], |group, [bytes]| {
-            encode(group, bytes)
+            encode(group, bytes);
         })?;
     } else {
         let (mut place, mut rows) = (vertices, Vec::new());
