@@ -107,7 +107,7 @@ def test_no_option_of_the_command_is_missing() -> None:
     import inspect
     import re
 
-    files = {"out", "force", "format", "unit", "walls", "table", "materials", "parts"}
+    files = {"out", "force", "format", "unit", "walls", "table", "areas", "materials", "parts"}
     files |= {"shard", "resume", "log", "strict", "help"}
     common = {"json", "quiet", "verbose", "no_progress", "color"}
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}

@@ -37,7 +37,8 @@ pub struct Differing {
     /// By how much at most (µm), where it is a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest: Option<f64>,
-    /// The first ten (or as many as were asked for), by their numbers in the first tracing, or in the second one if only that has them.
+    /// The first ten, or as many as were asked for, by their numbers in the first tracing, or in the second one if only
+    /// that has them.
     pub samples: Vec<i64>,
 }
 
