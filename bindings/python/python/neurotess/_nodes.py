@@ -13,8 +13,7 @@ if TYPE_CHECKING:
 
     from . import _neurotess
 
-    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
-    Nodes: TypeAlias = Union[Iterable[int], Iterable[tuple[str, int]], "pd.DataFrame", str]
+    Nodes: TypeAlias = Union[Iterable[int], Iterable[tuple[str, int]], pd.DataFrame, str]
 
 
 def rows_of(circuit: _neurotess.Circuit, nodes: Any, population: str | None) -> list[tuple[int, int]]:

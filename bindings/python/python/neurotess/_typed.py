@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from ._scene import DrawnCircuit
     from ._values import Values
 
-    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
     Drawable: TypeAlias = Union[Morphology, DrawnCircuit, File, Any]
-    Meshes: TypeAlias = Union[Mesh, str, os.PathLike[str], "SceneMesh", Iterable[Any]]
 
 ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
 Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
@@ -61,6 +59,10 @@ class SceneMesh(TypedDict, total=False):
     edges: bool
     scale: float
     fit: bool
+
+
+if TYPE_CHECKING:
+    Meshes: TypeAlias = Union[Mesh, str, os.PathLike[str], SceneMesh, Iterable[Any]]
 
 
 class Camera(TypedDict, total=False):

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from ._morphology import Morphology
 
-    # Not "… | …" in quotes: who evaluates annotations could not add to a text.
     Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[Any]]
     #: By cell the numbers of its points and that of its somata; what they are, and their unit.
     Told: TypeAlias = tuple[list[tuple[NDArray[np.float32], float]], str, str]
