@@ -53,7 +53,7 @@ pub fn areas_by<K: Ord + Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{SurfaceMesh, SurfaceVertex};
+    use crate::{Faces, SurfaceMesh, SurfaceVertex};
 
     #[test]
     fn triangles_count_for_the_section_that_they_show() {
@@ -62,16 +62,20 @@ mod tests {
             section,
             ..SurfaceVertex::default()
         };
-        let mut mesh = SurfaceMesh::default();
-        mesh.vertices = vec![
-            vertex(0., 0., 1),
-            vertex(3., 0., 1),
-            vertex(3., 2., 1),
-            vertex(0., 2., 2),
-            vertex(6., 0., 0),
-        ];
-        mesh.faces.triangles = vec![[1, 4, 2]];
-        mesh.faces.quads = vec![[0, 1, 2, 3]];
+        let mesh = SurfaceMesh {
+            vertices: vec![
+                vertex(0., 0., 1),
+                vertex(3., 0., 1),
+                vertex(3., 2., 1),
+                vertex(0., 2., 2),
+                vertex(6., 0., 0),
+            ],
+            faces: Faces {
+                triangles: vec![[1, 4, 2]],
+                quads: vec![[0, 1, 2, 3]],
+            },
+            ..SurfaceMesh::default()
+        };
         let areas = section_areas(&mesh).expect("finite");
         assert_eq!(areas, BTreeMap::from([(0, 3.0), (1, 3.0), (2, 3.0)]));
         let sides = areas_by(&mesh, |_, center| center.x > 2.5).expect("finite");
