@@ -48,6 +48,7 @@ def test_a_mesh_is_closed_and_has_attributes(cell: nt.Morphology, mesh: nt.Mesh)
         {"crossings": "separate", "level": 1},
         {"simulation": True},
         {"soma": "sphere", "soma_scale": 1.2},
+        {"soma_keep": "area"},
         {"soma": "none", "types": ["axon"]},
         {"soma_sphere": "octahedron", "soma_level": 3, "poisson": 0.1},
         {"ring": {1: 0.5, 2: 1.5}},

@@ -108,7 +108,9 @@ fn write_section(section: &Section, to: &mut ByteWriter) {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};
-    use neurotess_generate::{Crossings, Equal, Polygons, Sides, Smooth, SomaMethod, SphereKind};
+    use neurotess_generate::{
+        Crossings, Equal, Polygons, Sides, Smooth, SomaKeep, SomaMethod, SphereKind,
+    };
     use neurotess_morphology::NeuriteKind;
 
     use super::*;
@@ -157,10 +159,11 @@ mod tests {
 
     #[test]
     fn any_other_option_is_another_key() {
-        let changes: [fn(&mut GenerateOptions); 14] = [
+        let changes: [fn(&mut GenerateOptions); 15] = [
             |_| {},
             |o| o.soma = SomaMethod::Sphere,
             |o| o.poisson = 0.31,
+            |o| o.soma_keep = SomaKeep::Area,
             |o| o.soma_scale = 1.1,
             |o| o.radius_factor = 2.0,
             |o| {

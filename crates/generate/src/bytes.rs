@@ -27,10 +27,10 @@ impl Generated {
             let SomaReport {
                 volume,
                 area,
-                sphere_volume,
-                sphere_area,
+                traced_volume,
+                traced_area,
             } = *soma;
-            let figures = [volume, area, sphere_volume, sphere_area];
+            let figures = [volume, area, traced_volume, traced_area];
             figures.into_iter().for_each(|x| to.f64(x));
         }
         to.number(rings.len() as u64);
@@ -78,8 +78,8 @@ fn soma(from: &mut ByteReader<'_>) -> Result<SomaReport, BytesError> {
     Ok(SomaReport {
         volume: from.f64()?,
         area: from.f64()?,
-        sphere_volume: from.f64()?,
-        sphere_area: from.f64()?,
+        traced_volume: from.f64()?,
+        traced_area: from.f64()?,
     })
 }
 

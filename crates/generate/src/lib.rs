@@ -14,7 +14,7 @@ mod tubes;
 mod warning;
 
 pub use error::GenerateError;
-pub use options::{Crossings, GenerateOptions, Smooth, SomaMethod, SphereKind};
+pub use options::{Crossings, GenerateOptions, Smooth, SomaKeep, SomaMethod, SphereKind};
 pub use sides::{Equal, Polygons, Sides};
 pub use tracing::separate::{SeparatedPlace, Separation};
 pub use tracing::smooth::Smoothing;
@@ -56,14 +56,15 @@ pub struct Generated {
 /// Figures of a rebuilt soma.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SomaReport {
-    /// Volume (µm³) within the soma's surface, closed by the planes of the first rings.
+    /// Volume (µm³) within the soma's refined surface, closed by the planes of the first rings.
     pub volume: f64,
-    /// Area (µm²) of the soma's surface without the quads that neurites took.
+    /// Area (µm²) of the soma's refined surface without what neurites take.
     pub area: f64,
-    /// Volume (µm³) of the undeformed sphere.
-    pub sphere_volume: f64,
-    /// Area (µm²) of the undeformed sphere.
-    pub sphere_area: f64,
+    /// Volume (µm³) as traced: of the sphere, the outlines' body or the union of cones, times the cube of
+    /// [`GenerateOptions::soma_scale`].
+    pub traced_volume: f64,
+    /// Area (µm²) as traced.
+    pub traced_area: f64,
 }
 
 /// The first ring of a neurite on its soma.
@@ -120,12 +121,14 @@ pub fn generate_stoppable(
 ) -> Result<Generated, GenerateError> {
     let stop = Stop(stopped);
     let mut warnings = Warnings::default();
-    let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref());
+    let as_neurites = soma::as_neurites(morphology, options, &mut warnings);
+    let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref(), &as_neurites);
     mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
     mend::thicken(&mut skeleton, options.least_radius, &mut warnings);
     coordinates::check(morphology, &skeleton, &mut warnings)?;
     mend::merge_coincident(&mut skeleton, &mut warnings);
-    let mut soma_spheres = soma::soma_spheres(morphology, &skeleton, options, &mut warnings);
+    let mut soma_spheres =
+        soma::soma_spheres(morphology, &skeleton, &as_neurites, options, &mut warnings);
     mend::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
     if options.radius_factor != 1.0 || options.polygons.is_some() {

@@ -9,7 +9,7 @@ use crate::Polygons;
 /// How the soma is rebuilt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SomaMethod {
-    /// A sphere deformed towards the neurites by linear elasticity.
+    /// What was traced, drawn out towards the neurites by linear elasticity.
     #[default]
     Fem,
     /// The sphere as it is, neurites growing out of it.
@@ -18,6 +18,19 @@ pub enum SomaMethod {
     Profile,
     /// No soma: every neurite is closed by itself.
     None,
+}
+
+/// What of a soma stays as it was traced, while neurites draw its surface out ([`SomaMethod::Fem`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SomaKeep {
+    /// Its volume, closed by the planes of the first rings.
+    #[default]
+    Volume,
+    /// Its area, as for electrical properties of membranes; what neurites take counts.
+    Area,
+    /// The size of the shape that is drawn out, so that volume and area become what they may.
+    Scale,
 }
 
 /// The tetrahedral sphere that is deformed.
@@ -67,6 +80,8 @@ pub struct GenerateOptions {
     pub soma: SomaMethod,
     /// Poisson ratio ν of the soma's material, 0 to 0.49.
     pub poisson: f64,
+    /// What of a soma stays as it was traced.
+    pub soma_keep: SomaKeep,
     /// Factor on the soma's radius, greater than 0.
     pub soma_scale: f64,
     /// Factor on the radii of neurites, greater than 0, as for figures in which thin ones must be seen, or
@@ -115,6 +130,7 @@ impl Default for GenerateOptions {
         Self {
             soma: SomaMethod::Fem,
             poisson: 0.3,
+            soma_keep: SomaKeep::Volume,
             soma_scale: 1.0,
             radius_factor: 1.0,
             polygons: None,

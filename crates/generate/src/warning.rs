@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 34] = [
+pub(crate) const CODES: [&str; 36] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -34,9 +34,11 @@ pub(crate) const CODES: [&str; 34] = [
     "rings_cross",
     "sharp_bend",
     "simplified",
+    "soma_as_neurite",
     "soma_folded",
     "soma_inverted",
     "soma_radius_mended",
+    "soma_rounded",
     "stems_gathered",
 ];
 

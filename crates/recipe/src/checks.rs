@@ -224,6 +224,11 @@ mod tests {
                 text("cube"),
                 "'soma' [possible values: fem, sphere, profile, none]",
             ),
+            (
+                "soma_keep",
+                text("radius"),
+                "'soma_keep' [possible values: volume, area, scale]",
+            ),
             ("quads", text("yes"), "true or false"),
         ] {
             let told = told(&[(keyword, value)], Spelling::Keyword);
@@ -238,7 +243,7 @@ mod tests {
             r#"{"level":0}"#,
             r#"{"max_error":0.05,"types":[2,9],"ring":{"1":0.5}}"#,
             r#"{"isotropic":0.5,"max_edge":2.0,"max_aspect":1.0}"#,
-            r#"{"simulation":true,"radii":"traced","smooth":"auto"}"#,
+            r#"{"simulation":true,"radii":"traced","smooth":"auto","soma_keep":"area"}"#,
             r#"{"level":2,"level_along":8,"caps":"flat","soma":"none","quads":true}"#,
         ] {
             let read: MeshOptions = serde_json::from_str(text).expect(text);

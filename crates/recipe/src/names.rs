@@ -18,6 +18,7 @@ pub enum MeshOption {
     Simulation,
     Soma,
     Poisson,
+    SomaKeep,
     SomaScale,
     Radii,
     RadiusFactor,
@@ -53,7 +54,7 @@ pub enum Spelling {
 
 impl MeshOption {
     /// The options of a mesh, without those of its files.
-    pub(crate) const OF_MESH: [Self; 24] = [
+    pub(crate) const OF_MESH: [Self; 25] = [
         Self::Level,
         Self::MaxError,
         Self::LevelAlong,
@@ -67,6 +68,7 @@ impl MeshOption {
         Self::Simulation,
         Self::Soma,
         Self::Poisson,
+        Self::SomaKeep,
         Self::SomaScale,
         Self::Radii,
         Self::RadiusFactor,
@@ -102,6 +104,7 @@ impl MeshOption {
             Self::Simulation => "simulation",
             Self::Soma => "soma",
             Self::Poisson => "poisson",
+            Self::SomaKeep => "soma_keep",
             Self::SomaScale => "soma_scale",
             Self::Radii => "radii",
             Self::RadiusFactor => "radius_factor",
@@ -137,6 +140,7 @@ impl MeshOption {
             Self::Simulation => "purpose",
             Self::Soma => "generate.soma",
             Self::Poisson => "generate.poisson",
+            Self::SomaKeep => "generate.soma_keep",
             Self::SomaScale => "generate.soma_scale",
             Self::Radii => "generate.polygons",
             Self::RadiusFactor => "generate.radius_factor",

@@ -1,6 +1,6 @@
 //! What is known of a cell's mesh, under the names that `neurotess mesh --json` has.
 
-use neurotess_generate::{Generated, Separation, Smoothing};
+use neurotess_generate::{Generated, Separation, Smoothing, SomaReport};
 use neurotess_mesh::Quality;
 use neurotess_union::{Filled, Joined, Kin, Place};
 use serde::{Serialize, Serializer};
@@ -20,6 +20,12 @@ pub struct MeshReport {
     pub components: usize,
     /// Volume (µm³) of all somata.
     pub soma_volume: f64,
+    /// Area (µm²) of all somata without what neurites take.
+    pub soma_area: f64,
+    /// Volume (µm³) of all somata as they were traced.
+    pub soma_volume_traced: f64,
+    /// Area (µm²) of all somata as they were traced.
+    pub soma_area_traced: f64,
     /// How far smoothing moved points, if it was asked for.
     pub smoothing: Option<SmoothingReport>,
     /// What became of crossings, where they are merged.
@@ -45,7 +51,10 @@ impl CellMesh {
             closed: surface.topology.closed,
             euler: surface.topology.euler,
             components: surface.topology.components,
-            soma_volume: soma_volume(generated),
+            soma_volume: of_somata(generated, |soma| soma.volume),
+            soma_area: of_somata(generated, |soma| soma.area),
+            soma_volume_traced: of_somata(generated, |soma| soma.traced_volume),
+            soma_area_traced: of_somata(generated, |soma| soma.traced_area),
             smoothing: generated.smoothing.as_ref().map(SmoothingReport::from),
             crossings: merged.map(CrossingsReport::new),
             separation: generated.separation.as_ref().map(SeparationReport::from),
@@ -67,10 +76,10 @@ impl CellMesh {
     }
 }
 
-/// Volume (µm³) of all somata.
-fn soma_volume(generated: &Generated) -> f64 {
+/// The sum of a figure of all somata.
+fn of_somata(generated: &Generated, figure: fn(&SomaReport) -> f64) -> f64 {
     // Adding 0 turns −0, the sum of no somata, into 0.
-    generated.somata.iter().map(|soma| soma.volume).sum::<f64>() + 0.0
+    generated.somata.iter().map(figure).sum::<f64>() + 0.0
 }
 
 impl Serialize for Warning {

@@ -1,6 +1,6 @@
 //! Words for values of options.
 
-use neurotess_generate::{SomaMethod, SphereKind};
+use neurotess_generate::{SomaKeep, SomaMethod, SphereKind};
 use neurotess_morphology::NeuriteKind;
 use neurotess_refine::{Caps, Path};
 
@@ -62,6 +62,14 @@ impl Word for SomaMethod {
         ("sphere", Self::Sphere),
         ("profile", Self::Profile),
         ("none", Self::None),
+    ];
+}
+
+impl Word for SomaKeep {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("volume", Self::Volume),
+        ("area", Self::Area),
+        ("scale", Self::Scale),
     ];
 }
 

@@ -27,8 +27,8 @@ const COMPARED: [(&str, f64); 12] = [
 /// Markdown, a row for each cell and one of sums.
 pub(super) fn table(figures: &Value) -> String {
     let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
-    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | bends | volume | bytes | ms | simulation: pairs | pieces, genus | angle | s |\n";
-    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | bends | volume | bytes | ms | soma: volume, area % | silhouette % | drawn out | neck | ms | simulation: pairs | pieces, genus | angle | s |\n";
+    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     for cell in cells(figures) {
         let file = cell["file"].as_str().unwrap_or_default();
         let name = Path::new(file).file_stem().unwrap_or_default();
@@ -42,7 +42,7 @@ pub(super) fn table(figures: &Value) -> String {
         let of = |key: &str| number(&simulation[key]);
         let _ = writeln!(
             text,
-            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.1} | {} | {}, {} | {:.1} | {:.1} |",
+            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.1} | {} | {} | {}, {} | {:.1} | {:.1} |",
             cell["points"],
             counts(cell, 2),
             counts(cell, 4),
@@ -54,6 +54,7 @@ pub(super) fn table(figures: &Value) -> String {
             number(&cell["volume"]),
             number(&cell["bytes"]),
             1e3 * number(&cell["seconds"]),
+            soma(cell),
             told(simulation),
             of("pieces"),
             of("genus"),
@@ -78,7 +79,7 @@ pub(super) fn table(figures: &Value) -> String {
     };
     let _ = writeln!(
         text,
-        "| **all** (off, sections, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | |",
+        "| **all** (off, sections, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | | | | | | |",
         all("points"),
         counts(2),
         counts(4),
@@ -92,6 +93,27 @@ pub(super) fn table(figures: &Value) -> String {
         1e3 * all("seconds"),
     );
     text
+}
+
+/// A soma's figures: by how much volume, area and silhouette (median, largest) are off what was traced, how far it is drawn
+/// out, the angles at its necks (median, 99th percentile), and the time that it takes.
+fn soma(cell: &Value) -> String {
+    let figure = |key: &str, factor: f64, digits: usize| match cell[key].as_f64() {
+        Some(value) => format!("{:.digits$}", factor * value),
+        None => "–".into(),
+    };
+    let percent = |key: &str| figure(key, 100.0, 1);
+    format!(
+        "{}, {} | {}, {} | {} | {}, {} | {}",
+        percent("soma_volume"),
+        percent("soma_area"),
+        percent("silhouette"),
+        percent("silhouette_max"),
+        figure("drawn_out", 1.0, 2),
+        figure("neck", 1.0, 0),
+        figure("neck_99", 1.0, 0),
+        figure("soma_seconds", 1e3, 1),
+    )
 }
 
 /// Crossing pairs of a mesh for simulations, or that there is none.

@@ -6,7 +6,7 @@ use neurotess::generate::SomaMethod;
 /// `--soma`
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SomaArg {
-    /// A sphere deformed towards the neurites by linear elasticity
+    /// What was traced, drawn out towards the neurites by linear elasticity
     Fem,
     /// A sphere
     Sphere,

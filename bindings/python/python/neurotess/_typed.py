@@ -37,6 +37,7 @@ class MeshOptions(TypedDict, total=False):
     simulation: bool
     soma: Literal["fem", "sphere", "profile", "none"] | None
     poisson: float | None
+    soma_keep: Literal["volume", "area", "scale"] | None
     soma_scale: float | None
     radii: Literal["traced", "equal-area", "equal-perimeter"] | None
     radius_factor: float | None

@@ -137,3 +137,42 @@ fn a_header_s_unit_is_read() {
         assert!(!codes(&read(&format!("# Meta: {{{none}}}\n{rows}"))).contains(&"units_in_header"));
     }
 }
+
+/// Fault F15.
+#[neurotess_testing::test]
+fn a_cell_of_type_1_alone_is_neurites() {
+    let text =
+        "1 1 0 0 0 3 -1\n2 1 10 0 0 2 1\n3 1 60 20 0 1 2\n4 1 120 60 0 1 3\n5 1 120 -40 0 1 3\n";
+    let of_regions = read(text);
+    assert!(codes(&of_regions).contains(&"all_soma"));
+    assert!(of_regions.morphology.somata.is_empty());
+    assert_eq!(of_regions.morphology.points.len(), 5);
+    let kinds = of_regions.morphology.sections.iter();
+    assert!(
+        kinds
+            .clone()
+            .all(|section| section.kind == NeuriteKind::UNDEFINED)
+    );
+    // A soma alone stays one: a point, a chain that is no longer than somata are, an outline.
+    let chain = "1 1 0 0 0 6 -1\n2 1 8 0 0 7 1\n3 1 16 0 0 5 2\n4 1 24 9 0 3 3\n";
+    let outline = "1 1 9 0 0 0 -1\n2 1 0 9 0 0 1\n3 1 -9 0 0 0 2\n4 1 0 -9 0 0 3\n5 1 6 -6 0 0 4\n";
+    for text in ["1 1 0 0 0 5 -1\n", chain, outline] {
+        let soma = read(text);
+        assert_eq!(soma.morphology.somata.len(), 1, "{text}");
+        assert!(!codes(&soma).contains(&"all_soma"), "{text}");
+    }
+}
+
+/// Fault F16, also of a soma that is an outline.
+#[neurotess_testing::test]
+fn a_root_within_an_outline_hangs_on_its_soma() {
+    let outline = "1 1 9 0 0 0 -1\n2 1 0 9 0 0 1\n3 1 -9 0 0 0 2\n4 1 0 -9 0 0 3\n5 1 6 -6 0 0 4\n";
+    let attached = |start: &str| {
+        let cell = read(&format!("{outline}6 3 {start} 1 -1\n7 3 0 60 0 1 6\n"));
+        let attachment = cell.morphology.sections[0].attachment;
+        (codes(&cell).contains(&"root_in_soma"), attachment)
+    };
+    let (told, attachment) = attached("0 7 0");
+    assert!(told && attachment == Attachment::Soma { soma: 0, sample: 1 });
+    assert_eq!(attached("0 20 0"), (false, Attachment::Free));
+}

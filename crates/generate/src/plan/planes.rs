@@ -167,16 +167,14 @@ impl<'a> Planes<'a> {
     }
 
     /// The paper's orientation (García-Cantero et al. 2017): the sum of the unit directions in and out; at an end the
-    /// one there is; at a soma that away from it, at an inset that of the branch. Rings of a zone may lean towards it,
+    /// one there is; at a soma that of its first ring, at an inset that of the branch. Rings of a zone may lean towards it,
     /// twice as much as to the other side ([`ForkChoice`](super::ForkChoice)).
     fn normal(&self, i: usize) -> DVec3 {
         let ring = &self.rings[i];
         match self.path.end_at(i) {
             PathEnd::Soma(soma) => {
-                let away = self.soma_spheres[soma as usize]
-                    .and_then(|sphere| (ring.center - sphere.center).try_normalize());
-                if let Some(away) = away {
-                    return away;
+                if let Some(soma) = &self.soma_spheres[soma as usize] {
+                    return soma.axis(ring.center);
                 }
             }
             PathEnd::Inset(inset) => {

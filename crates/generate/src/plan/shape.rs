@@ -17,7 +17,7 @@ const TOP_STEPS: u32 = 8;
 
 /// Length (µm) over which lofts run along a branch that stands so high over its trunk; `steep`: cosine of
 /// the angle between the two's directions.
-pub(crate) fn collar(height: f64, radius: f64, steep: f64) -> f64 {
+pub(super) fn collar(height: f64, radius: f64, steep: f64) -> f64 {
     COLLAR * height.max(0.2 * radius) / steep
 }
 

@@ -108,54 +108,61 @@ impl Elasticity {
         })
     }
 
-    /// Displacement of every node when some surface nodes are moved as prescribed.
+    /// Displacements of every node when some surface nodes are moved as prescribed, for W prescriptions at once.
     ///
-    /// `None` if the prescription is singular (a node named twice). Nodes that are anchored stay.
-    pub(crate) fn solve(&self, prescribed: &[(u32, DVec3)]) -> Option<Vec<DVec3>> {
+    /// `None` if they are singular (a node named twice). Nodes that are anchored stay.
+    pub(crate) fn solve<const W: usize>(
+        &self,
+        prescribed: &[(u32, [DVec3; W])],
+    ) -> Option<Vec<[DVec3; W]>> {
         let free = prescribed.iter();
         let free = free.filter_map(|&(node, goal)| Some((self.mirrors.image(node)?, goal)));
         let constraints = free
             .clone()
             .flat_map(|(image, _)| [0, 1, 2].map(|axis| Constraint { image, axis }));
         let constraints: Vec<Constraint> = constraints.collect();
-        let goals = free.flat_map(|(_, goal)| goal.to_array());
-        let mut small: Vec<[f64; 1]> = goals.map(|goal| [goal]).collect();
+        let goals = free.flat_map(|(_, goals)| [0, 1, 2].map(|axis| goals.map(|goal| goal[axis])));
+        let mut small: Vec<[f64; W]> = goals.collect();
         let compliance = self.compliance(&constraints).factor()?;
         compliance.forward(&mut small);
         compliance.backward(&mut small);
-        let forces: Vec<(Constraint, f64)> = (constraints.into_iter().zip(small))
-            .map(|(constraint, [force])| (constraint, force))
-            .collect();
+        let forces: Vec<(Constraint, [f64; W])> = constraints.into_iter().zip(small).collect();
         let solved = self
             .fields
             .par_iter()
             .map(|field| self.answer(field, &forces));
-        let solved: Vec<Vec<[f64; 1]>> = solved.collect();
-        let displacement = |image: Image| {
-            let along = |axis: usize| {
-                let by_class = self.fields.iter().zip(&solved);
-                let by_class = by_class.map(|(field, solved)| {
-                    image.sign(field.parity, axis) * solved[3 * image.of as usize + axis][0]
-                });
-                by_class.sum::<f64>()
-            };
-            DVec3::from_array([0, 1, 2].map(along))
+        let solved: Vec<Vec<[f64; W]>> = solved.collect();
+        let displacements = |image: Image| -> [DVec3; W] {
+            std::array::from_fn(|side| {
+                let along = |axis: usize| {
+                    let by_class = self.fields.iter().zip(&solved);
+                    let by_class = by_class.map(|(field, solved)| {
+                        image.sign(field.parity, axis) * solved[3 * image.of as usize + axis][side]
+                    });
+                    by_class.sum::<f64>()
+                };
+                DVec3::from_array([0, 1, 2].map(along))
+            })
         };
         let images = self.mirrors.images();
-        Some(
-            images
-                .map(|image| image.map_or(DVec3::ZERO, displacement))
-                .collect(),
-        )
+        let at = |image: Option<Image>| image.map_or([DVec3::ZERO; W], displacements);
+        Some(images.map(at).collect())
     }
 
     /// Displacements of the representatives under forces, in the fields of a class.
-    fn answer(&self, field: &Field, forces: &[(Constraint, f64)]) -> Vec<[f64; 1]> {
-        let mut x = vec![[0.0]; field.held.len()];
+    fn answer<const W: usize>(
+        &self,
+        field: &Field,
+        forces: &[(Constraint, [f64; W])],
+    ) -> Vec<[f64; W]> {
+        let mut x = vec![[0.0; W]; field.held.len()];
         for &(constraint, force) in forces {
             let equation = constraint.equation();
             if !field.held[equation] {
-                x[equation][0] += constraint.sign(field.parity) * force * self.share();
+                let weight = constraint.sign(field.parity) * self.share();
+                for (x, force) in x[equation].iter_mut().zip(force) {
+                    *x += weight * force;
+                }
             }
         }
         field.factor.solve(&mut x);

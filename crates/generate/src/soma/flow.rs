@@ -5,12 +5,45 @@ use glam::{DMat3, DVec3};
 use super::insertion_quads::{Insertion, InsertionQuads};
 use super::sphere::Sphere;
 use super::warp::{self, Warp};
+use crate::tracing::SomaSphere;
 
-/// Rotation and warp together.
+/// A linear map of directions that makes them denser where the traced surface is far from the center.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    map: DMat3,
+    back: DMat3,
+}
+
+impl Stretch {
+    /// That of a soma.
+    pub(super) fn of(soma: &SomaSphere) -> Self {
+        let map = soma.shape().stretch();
+        let back = map.inverse();
+        match back.is_finite() {
+            true => Self { map, back },
+            false => Self {
+                map: DMat3::IDENTITY,
+                back: DMat3::IDENTITY,
+            },
+        }
+    }
+
+    fn apply(&self, direction: DVec3) -> DVec3 {
+        (self.map * direction).try_normalize().unwrap_or(direction)
+    }
+
+    /// The direction that is mapped to this one.
+    pub(super) fn undo(&self, direction: DVec3) -> DVec3 {
+        (self.back * direction).try_normalize().unwrap_or(direction)
+    }
+}
+
+/// Rotation, warp and stretch together.
 pub(super) struct Flow {
     rotation: DMat3,
     warp: Option<Warp>,
-    /// Unit directions of each ring's corners from the soma's center.
+    stretch: Stretch,
+    /// Each ring's corners, relative to the soma's center.
     pub(super) rings: Vec<[DVec3; 4]>,
 }
 
@@ -22,24 +55,29 @@ impl Flow {
         sphere: &Sphere,
         insertion_quads: &InsertionQuads,
         insertions: &[Insertion],
+        stretch: &Stretch,
     ) -> Self {
         let (mut from, mut to, mut rings) = (Vec::new(), Vec::new(), Vec::new());
         for (&quad, insertion) in insertion_quads.quads.iter().zip(insertions) {
             let corners = sphere.quads[quad].map(|v| sphere.nodes[v as usize]);
             let corners = warp::rotate(insertion_quads.rotation, corners);
-            let goals = warp::ring_directions(insertion.direction, insertion.angle(), corners);
             from.extend(corners);
-            to.extend(match insertion.inset {
-                true => warp::ring_directions(insertion.direction, insertion.quad_angle(), corners),
-                false => goals,
-            });
-            rings.push(goals);
+            let corners = corners.map(|corner| stretch.apply(corner));
+            let (center, radius) = (insertion.center(), insertion.radius);
+            let ring = warp::across(insertion.axis, corners).map(|out| center + out * radius);
+            let quad = match insertion.inset {
+                true => warp::ring_directions(insertion.foot, insertion.quad_angle(), corners),
+                false => ring.map(DVec3::normalize_or_zero),
+            };
+            to.extend(quad.map(|goal| stretch.undo(goal)));
+            rings.push(ring);
         }
         let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
         let warp = Warp::new(&from, &to, width, FLOW_STEPS);
         Self {
             rotation: insertion_quads.rotation,
             warp,
+            stretch: *stretch,
             rings,
         }
     }
@@ -47,9 +85,13 @@ impl Flow {
     /// Where a point of the unit sphere goes.
     pub(super) fn apply(&self, point: DVec3) -> DVec3 {
         let point = self.rotation * point;
-        match (&self.warp, point.try_normalize()) {
-            (Some(warp), Some(direction)) => warp.apply(direction) * point.length(),
-            _ => point,
-        }
+        let Some(direction) = point.try_normalize() else {
+            return point;
+        };
+        let warped = match &self.warp {
+            Some(warp) => warp.apply(direction),
+            None => direction,
+        };
+        self.stretch.apply(warped) * point.length()
     }
 }

@@ -5,13 +5,17 @@ use std::f64::consts::PI;
 use glam::{DMat3, DQuat, DVec3};
 
 use super::sphere::Sphere;
-use crate::soma::first_rings;
+use crate::soma::site;
 
 /// Where a neurite leaves the soma.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Insertion {
-    /// Unit direction from the soma's center.
+    /// Unit direction of the first ring's center from the soma's.
     pub(crate) direction: DVec3,
+    /// Unit normal of the ring's plane, away from the soma: the neurite's direction, as far as the ring may lean.
+    pub(crate) axis: DVec3,
+    /// Unit direction of where the neurite leaves the surface: of an inset, under its ring.
+    pub(crate) foot: DVec3,
     /// Distance of the first ring's center from the soma's.
     pub(crate) distance: f64,
     /// Radius of the first ring.
@@ -37,9 +41,17 @@ impl Insertion {
         (QUAD_REACH * self.radius / self.distance).atan()
     }
 
-    /// Distance of the ring's corners from the soma's center.
-    pub(crate) fn reach(&self) -> f64 {
-        self.distance.hypot(self.radius)
+    /// The ring's center, relative to the soma's.
+    pub(crate) fn center(&self) -> DVec3 {
+        self.direction * self.distance
+    }
+
+    /// Turns all of it about the soma's center.
+    fn turn(&mut self, axis: DVec3, angle: f64) {
+        let turn = DQuat::from_axis_angle(axis, angle);
+        self.direction = turn.mul_vec3(self.direction);
+        self.axis = turn.mul_vec3(self.axis);
+        self.foot = turn.mul_vec3(self.foot);
     }
 
     /// Raises an inset's ring over the surface, as far as it may. `quad`: distances of the corners of its quad from the
@@ -47,7 +59,7 @@ impl Insertion {
     pub(crate) fn raise(&mut self, quad: [f64; 4]) {
         let middle = quad.iter().sum::<f64>() / 4.0;
         let slope = quad.into_iter().fold(middle, f64::max) - middle;
-        let over = first_rings::over_surface(middle + slope / QUAD_REACH, self.radius);
+        let over = site::over_surface(middle + slope / QUAD_REACH, self.radius);
         self.distance = over.min(self.highest).max(self.distance);
     }
 
@@ -98,7 +110,7 @@ fn needed(a: &Insertion, b: &Insertion, gap: f64) -> f64 {
 }
 
 fn between(a: &Insertion, b: &Insertion) -> f64 {
-    a.direction.angle_between(b.direction)
+    a.foot.angle_between(b.foot)
 }
 
 fn shrink_crowded(insertions: &mut [Insertion], gap: f64) {
@@ -127,15 +139,14 @@ fn push_apart(insertions: &mut [Insertion], gap: f64) -> bool {
                 continue;
             }
             moved = true;
-            let axis = a.direction.cross(b.direction);
+            let axis = a.foot.cross(b.foot);
             let axis = axis
                 .try_normalize()
-                .unwrap_or_else(|| a.direction.any_orthonormal_vector());
+                .unwrap_or_else(|| a.foot.any_orthonormal_vector());
             // The thinner one gives way more.
             let share = (b.radius / (a.radius + b.radius)).clamp(0.1, 0.9);
-            let turn = |v: DVec3, by: f64| DQuat::from_axis_angle(axis, by).mul_vec3(v);
-            insertions[i].direction = turn(a.direction, -0.5 * lack * share);
-            insertions[j].direction = turn(b.direction, 0.5 * lack * (1.0 - share));
+            insertions[i].turn(axis, -0.5 * lack * share);
+            insertions[j].turn(axis, 0.5 * lack * (1.0 - share));
         }
     }
     moved
@@ -172,8 +183,12 @@ const ROTATIONS: usize = 48;
 
 /// Gives every insertion a quad that shares no vertex with another's: greedily, thickest first,
 /// then by exchanges that lower the cost, for the best of a fixed set of rotations of the sphere.
-/// `None` if the sphere has too few quads.
-pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<InsertionQuads> {
+/// `None` if the sphere has too few quads. `directions`: where on the sphere the insertions are.
+pub(crate) fn assign(
+    sphere: &Sphere,
+    insertions: &[Insertion],
+    directions: &[DVec3],
+) -> Option<InsertionQuads> {
     let centers: Vec<DVec3> = sphere
         .quads
         .iter()
@@ -195,9 +210,9 @@ pub(crate) fn assign(sphere: &Sphere, insertions: &[Insertion]) -> Option<Insert
     let mut best_cost = f64::INFINITY;
     for trial in 0..ROTATIONS {
         let rotation = rotation(trial);
-        let local: Vec<DVec3> = insertions
+        let local: Vec<DVec3> = directions
             .iter()
-            .map(|i| rotation.transpose() * i.direction)
+            .map(|&direction| rotation.transpose() * direction)
             .collect();
         let Some(mut quads) = greedy(sphere, &centers, &usable, &order, &local) else {
             continue;
@@ -300,8 +315,11 @@ mod tests {
     use crate::SphereKind;
 
     fn insertion(direction: DVec3, radius: f64) -> Insertion {
+        let direction = direction.normalize_or_zero();
         Insertion {
-            direction: direction.normalize_or_zero(),
+            direction,
+            axis: direction,
+            foot: direction,
             distance: 1.2,
             radius,
             inset: false,
@@ -335,7 +353,8 @@ mod tests {
                 )
             })
             .collect();
-        let insertion_quads = assign(&sphere, &crowd).unwrap();
+        let directions: Vec<DVec3> = crowd.iter().map(|i| i.foot).collect();
+        let insertion_quads = assign(&sphere, &crowd, &directions).unwrap();
         let mut vertices: Vec<u32> = insertion_quads
             .quads
             .iter()

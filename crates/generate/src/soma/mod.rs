@@ -1,11 +1,16 @@
 //! Somata: where each neurite's first ring is, and the surface between them.
 
 mod cholesky;
+mod draft;
 mod elasticity;
 pub(crate) mod first_rings;
 mod flow;
 mod insertion_quads;
+mod measure;
 mod profile;
+mod pull;
+mod site;
+mod soma_surface;
 mod somata;
 mod sphere;
 pub(crate) mod stems;
@@ -13,6 +18,6 @@ mod surface;
 mod trials;
 mod warp;
 
-pub(crate) use first_rings::SOMA_LIFT;
-pub(crate) use somata::{BuiltSoma, build, soma_spheres};
-pub(crate) use surface::SomaSurface;
+pub(crate) use site::collar;
+pub(crate) use soma_surface::SomaSurface;
+pub(crate) use somata::{BuiltSoma, as_neurites, build, soma_spheres};

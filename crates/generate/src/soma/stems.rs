@@ -32,8 +32,11 @@ pub(crate) fn gather(
     }
     let mut bundles = Vec::new();
     for (soma, stems) in stems {
-        if let Some(soma_sphere) = soma_spheres[soma as usize].filter(|_| stems.len() > MAX_STEMS) {
-            let near = bundle(skeleton, &soma_sphere, stems).into_iter();
+        if let Some(soma_sphere) = soma_spheres[soma as usize]
+            .as_ref()
+            .filter(|_| stems.len() > MAX_STEMS)
+        {
+            let near = bundle(skeleton, soma_sphere, stems).into_iter();
             bundles.extend(near.filter(|b| b.len() > 1).map(|b| (soma, soma_sphere, b)));
         }
     }
@@ -45,7 +48,7 @@ pub(crate) fn gather(
         let trunk = SkeletonNode {
             parent: NONE,
             root: Root::Soma(soma),
-            ..trunk(nodes, &soma_sphere, &bundle)
+            ..trunk(nodes, soma_sphere, &bundle)
         };
         let parent = nodes.len() as u32;
         nodes.push(trunk);
@@ -96,8 +99,9 @@ fn trunk(nodes: &[SkeletonNode], soma_sphere: &SomaSphere, bundle: &[u32]) -> Sk
         .unwrap_or(outwards(&thickest, soma_sphere));
     let distances = stems.map(|stem| stem.center.distance(soma_sphere.center));
     let nearest = distances.fold(f64::INFINITY, f64::min);
-    let clear = (1.5 * thickest.radius).min(0.5 * soma_sphere.radius);
-    let distance = soma_sphere.radius + (0.5 * (nearest - soma_sphere.radius)).max(clear);
+    let surface = soma_sphere.surface(direction);
+    let clear = (1.5 * thickest.radius).min(0.5 * surface);
+    let distance = surface + (0.5 * (nearest - surface)).max(clear);
     SkeletonNode {
         center: soma_sphere.center + direction * distance,
         ..thickest

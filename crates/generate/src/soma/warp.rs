@@ -78,10 +78,18 @@ fn great_circle(a: DVec3, b: DVec3, t: f64) -> DVec3 {
 /// Four directions at an angle about `center`, a quarter turn apart, counter-clockwise, turned so
 /// that they lie nearest to the four given ones.
 pub(crate) fn ring_directions(center: DVec3, angle: f64, near: [DVec3; 4]) -> [DVec3; 4] {
-    let (e1, e2) = center.any_orthonormal_pair();
+    across(center, near).map(|out| center * angle.cos() + out * angle.sin())
+}
+
+/// Four unit directions across an axis, a quarter turn apart, counter-clockwise, turned so that they lie nearest to the
+/// ways from the middle of four places to them.
+pub(crate) fn across(axis: DVec3, near: [DVec3; 4]) -> [DVec3; 4] {
+    let (e1, e2) = axis.any_orthonormal_pair();
+    let middle = near.iter().copied().sum::<DVec3>() / 4.0;
     let mut turn = (0.0, 0.0);
-    for (quarter, direction) in near.iter().enumerate() {
-        let (x, y) = (direction.dot(e1), direction.dot(e2));
+    for (quarter, place) in near.iter().enumerate() {
+        let off = *place - middle;
+        let (x, y) = (off.dot(e1), off.dot(e2));
         let (sin, cos) = (-std::f64::consts::FRAC_PI_2 * quarter as f64).sin_cos();
         let (x, y) = (x * cos - y * sin, x * sin + y * cos);
         turn = (turn.0 + x, turn.1 + y);
@@ -89,8 +97,7 @@ pub(crate) fn ring_directions(center: DVec3, angle: f64, near: [DVec3; 4]) -> [D
     let start = f64::atan2(turn.1, turn.0);
     [0.0, 1.0, 2.0, 3.0].map(|quarter| {
         let around = start + std::f64::consts::FRAC_PI_2 * quarter;
-        let across = e1 * around.cos() + e2 * around.sin();
-        center * angle.cos() + across * angle.sin()
+        e1 * around.cos() + e2 * around.sin()
     })
 }
 

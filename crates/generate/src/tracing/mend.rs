@@ -174,18 +174,20 @@ pub(crate) fn leave_out_inside(
             _ if node.parent != NONE => leading[node.parent as usize],
             _ => None,
         };
-        let Some((soma, soma_sphere)) = soma.and_then(|s| Some((s, soma_spheres[s as usize]?)))
+        let Some((soma, soma_sphere)) =
+            soma.and_then(|s| Some((s, soma_spheres[s as usize].as_ref()?)))
         else {
             continue;
         };
         let distance = node.center.distance(soma_sphere.center);
+        let surface = soma_sphere.towards(node.center);
         let fork = children.of(i as u32).len() > 1;
         let margin = if fork {
-            node.radius.min(0.5 * soma_sphere.radius)
+            node.radius.min(0.5 * surface)
         } else {
-            0.02 * soma_sphere.radius
+            0.02 * surface
         };
-        if distance < soma_sphere.radius + margin {
+        if distance < surface + margin {
             keep[i] = false;
             leading[i] = Some(soma);
             dropped_roots += usize::from(children.of(i as u32).is_empty());

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use neurotess_mesh::{SectionNumber, SwcType};
-use neurotess_morphology::{Attachment, Morphology, NeuriteKind};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Soma};
 
 /// Stands for "no node" where an index of one is stored.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -27,6 +27,42 @@ pub(crate) struct SkeletonNode {
     pub(crate) kind: SwcType,
     /// The section that it lies on.
     pub(crate) section: SectionNumber,
+}
+
+/// Adds the samples of a soma, parents first, and says which nodes they are.
+fn push_samples(soma: &Soma, nodes: &mut Vec<SkeletonNode>) -> Vec<u32> {
+    let mut node_of = vec![NONE; soma.samples.len()];
+    for start in 0..soma.samples.len() {
+        // Up to one that is a node, or the first; then down again.
+        let mut ancestors = vec![start];
+        let up = |&last: &usize| soma.samples[last].parent.map(|parent| parent as usize);
+        while let Some(above) = ancestors.last().and_then(up)
+            && node_of[above] == NONE
+            && ancestors.len() <= soma.samples.len()
+        {
+            ancestors.push(above);
+        }
+        for at in ancestors.into_iter().rev() {
+            if node_of[at] != NONE {
+                continue;
+            }
+            let sample = &soma.samples[at];
+            let parent = sample
+                .parent
+                .map_or(NONE, |parent| node_of[parent as usize]);
+            node_of[at] = nodes.len() as u32;
+            nodes.push(SkeletonNode {
+                center: sample.position.as_dvec3(),
+                radius: f64::from(sample.radius),
+                parent,
+                root: Root::Free,
+                sample: sample.id,
+                kind: SwcType::SOMA,
+                section: SectionNumber::SOMA,
+            });
+        }
+    }
+    node_of
 }
 
 /// What a root hangs on.
@@ -111,10 +147,22 @@ impl Shapes<'_> {
 
 impl Skeleton {
     /// Nodes of sections of these kinds (`None`: all). A tree whose parent is of another kind becomes free.
-    pub(crate) fn new(morphology: &Morphology, kinds: Option<&[NeuriteKind]>) -> Self {
+    /// `as_neurites`: by soma, whether its samples are nodes, too, with the neurites as their children.
+    pub(crate) fn new(
+        morphology: &Morphology,
+        kinds: Option<&[NeuriteKind]>,
+        as_neurites: &[bool],
+    ) -> Self {
         let kept = |kind: NeuriteKind| kinds.is_none_or(|kinds| kinds.contains(&kind));
         let mut new_index = vec![NONE; morphology.points.len()];
         let mut nodes = Vec::with_capacity(morphology.points.len());
+        let somata = morphology.somata.iter().zip(as_neurites);
+        let node_of: Vec<Vec<u32>> = somata
+            .map(|(soma, &as_neurite)| match as_neurite {
+                true => push_samples(soma, &mut nodes),
+                false => Vec::new(),
+            })
+            .collect();
         for (id, section) in morphology.sections.iter().enumerate() {
             if !kept(section.kind) {
                 continue;
@@ -124,7 +172,13 @@ impl Skeleton {
                     let last = morphology.sections[parent.index()].end as usize - 1;
                     (new_index[last], Root::Free)
                 }
-                Attachment::Soma { soma, .. } => (NONE, Root::Soma(soma)),
+                Attachment::Soma { soma, sample } => {
+                    let node = node_of[soma as usize].get(sample as usize);
+                    match node {
+                        Some(&node) => (node, Root::Free),
+                        None => (NONE, Root::Soma(soma)),
+                    }
+                }
                 Attachment::Free => (NONE, Root::Free),
             };
             for point in section.range() {

@@ -4,15 +4,15 @@ use glam::{DVec3, Vec3};
 use neurotess_mesh::{Patch, PatchKind, Role, SectionNumber, SwcType, TracingPoint, Vertex};
 
 use super::assembly::{Assembly, Somata, sample_id};
-use crate::plan::{PathEnd, collar};
-use crate::soma::{SOMA_LIFT, SomaSurface};
+use crate::plan::PathEnd;
+use crate::soma::{SomaSurface, collar};
 
 impl Assembly<'_> {
     /// Adds all somata.
     pub(super) fn add_somata(&mut self, somata: &Somata<'_>) {
         let stems = self.stems(somata.surfaces.len());
         for (index, (soma, stems)) in somata.surfaces.iter().zip(stems).enumerate() {
-            if let (Some(soma), Some(soma_sphere)) = (soma, somata.soma_spheres[index]) {
+            if let (Some(soma), Some(soma_sphere)) = (soma, &somata.soma_spheres[index]) {
                 let samples = &somata.morphology.somata[index].samples;
                 let sample = samples.first().map_or(-1, |s| s.id);
                 self.add_soma(&soma.surface, soma_sphere.center, sample, &stems);
@@ -35,10 +35,16 @@ impl Assembly<'_> {
     fn add_soma(&mut self, surface: &SomaSurface, center: DVec3, sample: i64, stems: &[u32]) {
         // Each vertex of a ring belongs to the tracing point of its neurite, all others to one of their own.
         let mut owner = vec![None; surface.vertices.len()];
-        for ((&stem, ring), inset) in stems.iter().zip(&surface.rings).zip(&surface.insets) {
+        let rings = surface.rings.iter().zip(&surface.insertions);
+        for ((&stem, (ring, insertion)), inset) in stems.iter().zip(rings).zip(&surface.insets) {
             let first = &self.plan.paths[stem as usize].rings[0];
             let tracing = match inset {
-                Some(_) => self.soma_inset(stem, center),
+                Some(quad) => {
+                    let place = |v: u32| surface.vertices[v as usize];
+                    let lifted = ring.iter().zip(quad);
+                    let lifted = lifted.map(|(&over, &under)| place(over) - place(under));
+                    self.soma_inset(stem, insertion.axis, lifted.sum::<DVec3>() / 4.0)
+                }
                 None => self.tracing(first, Role::Insertion),
             };
             ring.iter().for_each(|&v| owner[v as usize] = Some(tracing));
@@ -81,13 +87,13 @@ impl Assembly<'_> {
             .extend(rings.map(|(&stem, &ring)| (stem, shift(ring))));
     }
 
-    /// The tracing point of a ring that stands over its soma's surface.
-    fn soma_inset(&mut self, stem: u32, soma: DVec3) -> u32 {
+    /// The tracing point of a ring that stands over its soma's surface, lifted by so much.
+    fn soma_inset(&mut self, stem: u32, axis: DVec3, lifted: DVec3) -> u32 {
         let ring = &self.plan.paths[stem as usize].rings[0];
         let tracing = self.tracing(ring, Role::Inset);
         let point = &mut self.mesh.tracing[tracing as usize];
-        point.tangent = (ring.center - soma).normalize_or(DVec3::Y).as_vec3();
-        point.collar = collar(SOMA_LIFT * ring.radius, ring.radius, 1.0) as f32;
+        point.tangent = axis.as_vec3();
+        point.collar = collar(lifted.dot(axis), ring.radius) as f32;
         tracing
     }
 }

@@ -7,6 +7,7 @@ mod limits;
 mod rings;
 mod soma;
 mod stop;
+mod traced_somata;
 mod tubes;
 mod turned_back;
 

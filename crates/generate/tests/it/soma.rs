@@ -1,7 +1,7 @@
 //! The soma as users see it: counts, volume against ν, alternatives, awkward neurites.
 
 use glam::{Vec3, vec3};
-use neurotess_generate::{GenerateOptions, Generated, SomaMethod, SphereKind, generate};
+use neurotess_generate::{GenerateOptions, Generated, SomaKeep, SomaMethod, SphereKind, generate};
 use neurotess_mesh::{PatchKind, Role};
 use neurotess_morphology::{
     Attachment, Morphology, NeuriteKind, Point, Section, Soma, SomaKind, SomaSample,
@@ -85,12 +85,13 @@ fn volume_falls_as_poissons_ratio_rises() {
             let options = GenerateOptions {
                 poisson,
                 sphere,
+                soma_keep: SomaKeep::Scale,
                 ..GenerateOptions::default()
             };
             let generated = generate(&cell(&five(), 6.5, 0.5), &options).expect("meshed");
             assert_eq!(codes(&generated), [""; 0]);
             let report = generated.somata[0];
-            let share = report.volume / report.sphere_volume;
+            let share = report.volume / report.traced_volume;
             neurotess_testing::note!("{sphere:?} ν {poisson}: volume {share:.3} of the sphere's");
             assert!(share < last, "{sphere:?} ν {poisson}: {share} after {last}");
             assert!((0.9..1.4).contains(&share));
@@ -138,7 +139,7 @@ fn soma_scale_scales_the_soma() {
         generate(&cell(&five(), 6.5, 0.5), &options)
             .expect("meshed")
             .somata[0]
-            .sphere_volume
+            .traced_volume
     };
     assert!((volume(0.5) / volume(1.0) - 0.125).abs() < 1e-9);
 }
@@ -161,8 +162,8 @@ fn radius_factor_thickens_neurites_alone() {
     assert!(thick.mesh.topology().closed);
     assert!((radius(&thick) / radius(&traced) - 2.5).abs() < 1e-6);
     assert_eq!(
-        thick.somata[0].sphere_volume,
-        traced.somata[0].sphere_volume
+        thick.somata[0].traced_volume,
+        traced.somata[0].traced_volume
     );
     // Radii that coordinates of 32 bits cannot hold are refused like those of a tracing.
     let huge = GenerateOptions {
@@ -184,7 +185,7 @@ fn alternatives_differ_as_they_should() {
             .somata
             .first()
             .copied();
-        report.map(|r| r.volume / r.sphere_volume)
+        report.map(|r| r.volume / r.traced_volume)
     };
     let (sphere, profile) = (volume(SomaMethod::Sphere), volume(SomaMethod::Profile));
     assert!(

@@ -137,6 +137,10 @@ fn build(
     let mut notes = Notes::default();
 
     let mut somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
+    let typed = !nodes.iter().all(is_soma);
+    if !typed {
+        within::neurites_of_type_1(&mut somata, nodes, &parents, &mut notes);
+    }
     if tree::hang_up_by(&mut parents, &somata.tops) {
         links = Links::of(&parents);
     }
@@ -157,6 +161,7 @@ fn build(
         links: &links,
         somata: &somata,
         roots: &roots,
+        typed,
     };
     let starts = walk.starts(&mut notes);
     let frame = Frame::choose(nodes, walk.anchor(&starts));
@@ -209,6 +214,8 @@ struct Walk<'a> {
     links: &'a Links,
     somata: &'a Somata,
     roots: &'a within::RootsInSomata,
+    /// Whether types say anything: they do not where all are the soma's.
+    typed: bool,
 }
 
 impl Walk<'_> {
@@ -314,7 +321,11 @@ impl Walk<'_> {
         frame: &Frame,
         into: &mut Morphology,
     ) -> u32 {
-        let kind = self.nodes[first_node as usize].kind;
+        let traced = self.nodes[first_node as usize].kind;
+        let kind = match self.typed {
+            true => traced,
+            false => NeuriteKind::UNDEFINED,
+        };
         let first = into.points.len() as u32;
         let mut at = first_node;
         loop {
@@ -326,7 +337,7 @@ impl Walk<'_> {
             });
             into.sample_ids.push(node.id);
             match self.links.only_child(at) {
-                Some(child) if self.nodes[child as usize].kind == kind => at = child,
+                Some(child) if self.nodes[child as usize].kind == traced => at = child,
                 _ => break,
             }
         }

@@ -11,6 +11,8 @@ use crate::{Soma, SomaKind};
 pub enum Oddity {
     /// No sample is of type 1.
     NoSoma,
+    /// All samples are of type 1, and run on as neurites do: taken as neurites.
+    AllSoma,
     /// A tree's root was a neurite's point and its soma elsewhere: the soma is the root now.
     SomaNotRoot,
     /// Somata lie in the same place: taken as one.
@@ -40,6 +42,7 @@ impl Oddity {
     pub fn code(self) -> &'static str {
         match self {
             Self::NoSoma => "no_soma",
+            Self::AllSoma => "all_soma",
             Self::SomaNotRoot => "soma_not_root",
             Self::CoincidentSomata => "coincident_somata",
             Self::SeveralSomata => "several_somata",
@@ -59,6 +62,7 @@ impl fmt::Display for Oddity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NoSoma => "no sample is of type 1: the cell has no soma",
+            Self::AllSoma => "all samples are of type 1, the soma's: taken as neurites without a soma",
             Self::SomaNotRoot => "the soma is not the root of its tree: re-rooted there",
             Self::CoincidentSomata => "somata in the same place: taken as one",
             Self::SeveralSomata => "several separate somata: the thickest is taken as the main one",

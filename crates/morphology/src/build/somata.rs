@@ -62,6 +62,28 @@ impl Somata {
         self.sample[node as usize] = sample;
     }
 
+    /// Turns somata into points of neurites, except those whose members stay.
+    pub(super) fn retain(&mut self, stays: impl Fn(&[u32]) -> bool) {
+        let kept = |soma: usize| stays(&self.members[soma]);
+        let kept: Vec<bool> = (0..self.members.len()).map(kept).collect();
+        let mut count = 0;
+        let number = |&kept: &bool| {
+            count += u32::from(kept);
+            if kept { count - 1 } else { NONE }
+        };
+        let number: Vec<u32> = kept.iter().map(number).collect();
+        for (role, sample) in self.role.iter_mut().zip(&mut self.sample) {
+            *role = number.get(*role as usize).copied().unwrap_or(NONE);
+            if *role == NONE {
+                *sample = NONE;
+            }
+        }
+        let mut stays = kept.iter();
+        self.members.retain(|_| *stays.next().unwrap_or(&true));
+        let mut stays = kept.iter();
+        self.tops.retain(|_| *stays.next().unwrap_or(&true));
+    }
+
     /// `order` has parents before children; `None` if the nodes themselves do.
     pub(super) fn find(
         nodes: &[Node],

@@ -7,13 +7,14 @@
 //! At levels 2 and 4: crossing pairs of facets within four radii of a fork, all of them, and facets folded by more than
 //! 120°. At level 4 also the volume, the share of the area near forks that is off the branches' round cones, and by how much
 //! the area of sections differs from their frusta: the median, and the 95th percentile; and how deep (radii, the median)
-//! the inner walls of bends away from forks are within the traced cones, of 40 to 100° and of 100 to 140°.
+//! the inner walls of bends away from forks are within the traced cones, of 40 to 100° and of 100 to 140°. At level 8
+//! somata: see [`soma`].
 
 use std::path::Path;
 use std::time::Instant;
 
 use neurotess::formats::{ReadOptions, read};
-use neurotess::generate::{GenerateOptions, generate};
+use neurotess::generate::{GenerateOptions, Generated, generate_timed};
 use neurotess::mesh::{CoarseMesh, Role, SurfaceMesh, topology};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement, pack};
 
@@ -24,6 +25,7 @@ mod bends;
 mod facets;
 mod off;
 mod sections;
+mod soma;
 mod tree;
 
 /// Most patches of a part that is packed for the device.
@@ -44,22 +46,26 @@ fn main() {
 /// The figures of a file.
 fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let morphology = read(file, &ReadOptions::default())?.morphology;
-    let (mut mesh, mut fastest) = (CoarseMesh::default(), f64::INFINITY);
+    let (mut generated, mut fastest) = (Generated::default(), f64::INFINITY);
+    let mut soma_seconds = f64::INFINITY;
     for _ in 0..RUNS {
         let clock = Instant::now();
-        mesh = generate(&morphology, &GenerateOptions::default())?.mesh;
-        fastest = fastest.min(clock.elapsed().as_secs_f64());
+        let seconds = || clock.elapsed().as_secs_f64();
+        generated = generate_timed(&morphology, &GenerateOptions::default(), seconds)?;
+        fastest = fastest.min(seconds());
+        soma_seconds = soma_seconds.min(generated.soma_seconds);
     }
+    let mesh = &generated.mesh;
     let tree = Tree::new(&morphology);
     let mut line = format!(
-        r#"{{"file": {:?}, "points": {}, "seconds": {fastest}, "bytes": {}"#,
+        r#"{{"file": {:?}, "points": {}, "seconds": {fastest}, "soma_seconds": {soma_seconds}, "bytes": {}"#,
         file.display().to_string(),
         morphology.points.len(),
-        bytes_per_point(&mesh),
+        bytes_per_point(mesh),
     );
     for level in [2, 4] {
         let levels = LodCriterion::Homogeneous(level);
-        let refinement = Refinement::new(&mesh, levels, &RefineOptions::default());
+        let refinement = Refinement::new(mesh, levels, &RefineOptions::default());
         let surface = SurfaceMesh::collect(&refinement);
         let positions: Vec<_> = surface.vertices.iter().map(|v| v.position).collect();
         let topology = topology(&positions, &surface.faces);
@@ -83,6 +89,7 @@ fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
             );
         }
     }
+    line += &soma::figures(&morphology, &generated)?;
     Ok(line + "}")
 }
 

@@ -45,6 +45,7 @@ impl NamedOptions {
             (O::Simulation, switch(self.simulation)),
             (O::Soma, self.soma.map(word)),
             (O::Poisson, number(self.poisson)),
+            (O::SomaKeep, self.soma_keep.map(word)),
             (O::SomaScale, number(self.soma_scale)),
             (O::Radii, self.radii.map(word)),
             (O::RadiusFactor, number(self.radius_factor)),

@@ -47,6 +47,7 @@ impl NamedOptions {
             simulation,
             soma: (generate.soma != usual.soma).then_some(generate.soma),
             poisson: other(generate.poisson, usual.poisson),
+            soma_keep: (generate.soma_keep != usual.soma_keep).then_some(generate.soma_keep),
             soma_scale: other(generate.soma_scale, usual.soma_scale),
             radii: (radii != usual_radii).then_some(radii),
             radius_factor: other(generate.radius_factor, usual.radius_factor),

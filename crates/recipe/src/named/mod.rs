@@ -6,7 +6,7 @@ mod to_options;
 
 use std::collections::BTreeMap;
 
-use neurotess_generate::{Smooth, SomaMethod, SphereKind};
+use neurotess_generate::{Smooth, SomaKeep, SomaMethod, SphereKind};
 use neurotess_morphology::NeuriteKind;
 use neurotess_refine::{Caps, Path};
 
@@ -57,6 +57,8 @@ pub struct NamedOptions {
     pub soma: Option<SomaMethod>,
     /// Poisson's ratio of the soma's material, from 0 to below 0.5.
     pub poisson: Option<f64>,
+    /// What of the soma stays as it was traced.
+    pub soma_keep: Option<SomaKeep>,
     /// Factor on the soma's radius.
     pub soma_scale: Option<f64>,
     /// Which radius rings of neurites have.
@@ -106,6 +108,7 @@ impl NamedOptions {
             MeshOption::Simulation => self.simulation = given.switch()?,
             MeshOption::Soma => self.soma = Some(given.word()?),
             MeshOption::Poisson => self.poisson = Some(given.number()?),
+            MeshOption::SomaKeep => self.soma_keep = Some(given.word()?),
             MeshOption::SomaScale => self.soma_scale = Some(given.number()?),
             MeshOption::Radii => self.radii = Some(given.word()?),
             MeshOption::RadiusFactor => self.radius_factor = Some(given.number()?),

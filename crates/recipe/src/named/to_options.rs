@@ -129,6 +129,7 @@ impl NamedOptions {
         Ok(GenerateOptions {
             soma: self.soma.unwrap_or(usual.soma),
             poisson: self.poisson.unwrap_or(usual.poisson),
+            soma_keep: self.soma_keep.unwrap_or(usual.soma_keep),
             soma_scale: self.soma_scale.unwrap_or(usual.soma_scale),
             radius_factor: self.radius_factor.unwrap_or(usual.radius_factor),
             sphere: self.soma_sphere.unwrap_or(usual.sphere),

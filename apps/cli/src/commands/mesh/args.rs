@@ -135,7 +135,10 @@ pub(crate) struct MeshArgs {
         help_heading = "Soma"
     )]
     pub(crate) poisson: f64,
-    /// Factor on the soma's radius
+    /// What of the soma stays as it was traced, while neurites draw it out [default: volume]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Soma")]
+    pub(crate) soma_keep: Option<SomaKeepArg>,
+    /// Factor on the soma's size
     #[arg(
         long,
         default_value_t = 1.0,
@@ -260,6 +263,17 @@ pub(crate) enum CapsArg {
     Round,
     /// Disks
     Flat,
+}
+
+/// `--soma-keep`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SomaKeepArg {
+    /// Its volume, closed by the first rings of neurites
+    Volume,
+    /// Its area, for electrical properties
+    Area,
+    /// The size of the shape that neurites draw out
+    Scale,
 }
 
 /// `--soma-sphere`

@@ -49,7 +49,11 @@ pub(crate) struct CellReport {
     /// Area (µm²) of the written mesh; none if it is not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) area: Option<f64>,
+    /// Volume (µm³) and area (µm²) of the somata, as meshed and as traced; what neurites take is no part of the area.
     pub(crate) soma_volume: f64,
+    pub(crate) soma_area: f64,
+    pub(crate) soma_volume_traced: f64,
+    pub(crate) soma_area_traced: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) smoothing: Option<SmoothingReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -242,6 +246,9 @@ pub(super) fn finish(
         volume: measured.map(|(volume, _)| volume),
         area: measured.map(|(_, area)| area),
         soma_volume: growth * mesh.soma_volume,
+        soma_area: growth.cbrt().powi(2) * mesh.soma_area,
+        soma_volume_traced: growth * mesh.soma_volume_traced,
+        soma_area_traced: growth.cbrt().powi(2) * mesh.soma_area_traced,
         smoothing: mesh.smoothing,
         crossings: mesh.crossings,
         separation: mesh.separation,

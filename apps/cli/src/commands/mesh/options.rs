@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use neurotess::generate::SphereKind;
+use neurotess::generate::{SomaKeep, SphereKind};
 use neurotess::mesh::{Format, Unit};
 use neurotess::recipe::{
     self, Crossings, FileOptions, Levels, NamedOptions, OptionValue, OptionsError, Radii, Spelling,
 };
 use neurotess::refine::{Caps, LodCriterion, Path};
 
-use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SphereArg};
+use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SomaKeepArg, SphereArg};
 use crate::io::inputs::Inputs;
 use crate::io::output::is_standard;
 use crate::io::targets::{self, Job};
@@ -62,6 +62,7 @@ impl MeshOptions {
         // What earlier versions did not have is left out where it has its default.
         let generate = format!("{generate:?}");
         let generate = generate
+            .replace(", soma_keep: Volume", "")
             .replace(", polygons: None", "")
             .replace(", unknown_radius: None", "")
             .replace(", least_radius: 0.0", "")
@@ -175,6 +176,11 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
     named.simulation = args.simulation;
     named.soma = Some(args.soma.method());
     named.poisson = Some(args.poisson);
+    named.soma_keep = args.soma_keep.map(|keep| match keep {
+        SomaKeepArg::Volume => SomaKeep::Volume,
+        SomaKeepArg::Area => SomaKeep::Area,
+        SomaKeepArg::Scale => SomaKeep::Scale,
+    });
     named.soma_scale = Some(args.soma_scale);
     named.radii = args.radii.map(|radii| match radii {
         RadiiArg::Traced => Radii::Traced,

@@ -55,7 +55,12 @@ fn columns(m: &Measures) -> Vec<(&'static str, f64)> {
     ];
     if m.soma.kind != "none" {
         columns.push(("mio_soma_surface", m.soma.area));
-        columns.push(("mio_neurom_soma_radius", m.soma.radius));
+        // NeuroM's radius of cylinders is that of their sides; ours counts the faces at the ends, too.
+        let radius = match m.soma.kind {
+            "cylinders" if m.soma.area > 0.0 => (m.soma.area / 4.0 / std::f64::consts::PI).sqrt(),
+            _ => m.soma.radius,
+        };
+        columns.push(("mio_neurom_soma_radius", radius));
     }
     columns
 }

@@ -59,6 +59,13 @@ fn linear_field_passes_the_patch_test() {
     }
 }
 
+/// The answer to one prescription.
+fn solve(elasticity: &Elasticity, prescribed: &[(u32, DVec3)]) -> Vec<DVec3> {
+    let prescribed: Vec<(u32, [DVec3; 1])> = prescribed.iter().map(|&(v, u)| (v, [u])).collect();
+    let moved = elasticity.solve(&prescribed).unwrap();
+    moved.into_iter().map(|[u]| u).collect()
+}
+
 #[test]
 fn prescribed_nodes_reach_their_goals() {
     let sphere = Sphere::new(SphereKind::Octahedron, 3);
@@ -67,14 +74,20 @@ fn prescribed_nodes_reach_their_goals() {
         .iter()
         .map(|&v| (v, sphere.nodes[v as usize] * 0.3))
         .collect();
-    let u = elasticity.solve(&prescribed).unwrap();
+    // Beside another prescription, of which it knows nothing.
+    let both: Vec<(u32, [DVec3; 2])> = prescribed
+        .iter()
+        .map(|&(v, goal)| (v, [goal, DVec3::Z]))
+        .collect();
+    let u = elasticity.solve(&both).unwrap();
     for (node, goal) in prescribed {
-        assert!((u[node as usize] - goal).length() < 1e-10);
+        assert!((u[node as usize][0] - goal).length() < 1e-10);
+        assert!((u[node as usize][1] - DVec3::Z).length() < 1e-10);
     }
     assert!(
         u.iter()
             .enumerate()
-            .all(|(i, d)| !sphere.anchored(i) || *d == DVec3::ZERO)
+            .all(|(i, d)| !sphere.anchored(i) || *d == [DVec3::ZERO; 2])
     );
 }
 
@@ -100,7 +113,7 @@ fn nodes_that_are_free_bear_no_force() {
                 )
             })
             .collect();
-        let moved = elasticity.solve(&prescribed).unwrap();
+        let moved = solve(&elasticity, &prescribed);
         for &(node, goal) in &prescribed {
             assert!((moved[node as usize] - goal).length() < 1e-10);
         }
@@ -135,7 +148,7 @@ fn lame_error(level: u32) -> f64 {
     let surface: Vec<(u32, DVec3)> = (0..sphere.surface)
         .map(|i| (i as u32, sphere.nodes[i]))
         .collect();
-    let moved = elasticity.solve(&surface).unwrap();
+    let moved = solve(&elasticity, &surface);
     let errors: Vec<f64> = sphere
         .nodes
         .iter()

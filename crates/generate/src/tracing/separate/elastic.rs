@@ -134,11 +134,12 @@ fn mobility(rods: &Rods, spread: &Spread) -> Vec<f64> {
 
 fn soma_weight(rods: &Rods, point: u32) -> f64 {
     let origin = rods.paths.origin(point);
-    let Some(sphere) = origin.and_then(|o| rods.somata[o.soma as usize]) else {
+    let Some(sphere) = origin.and_then(|o| rods.somata[o.soma as usize].as_ref()) else {
         return 1.0;
     };
-    let distance = rods.points[point as usize].rest.distance(sphere.center);
-    1.0 + (SOMA_WEIGHT - 1.0) * (2.0 - distance / sphere.radius).clamp(0.0, 1.0)
+    let rest = rods.points[point as usize].rest;
+    let distance = rest.distance(sphere.center) / sphere.towards(rest);
+    1.0 + (SOMA_WEIGHT - 1.0) * (2.0 - distance).clamp(0.0, 1.0)
 }
 
 fn bends(rods: &Rods, spread: &Spread, mobility: &[f64]) -> Vec<Bend> {

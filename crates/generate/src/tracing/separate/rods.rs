@@ -230,25 +230,26 @@ fn between(above: &Point, below: &Point, share: f64, parent: u32) -> Point {
 }
 
 /// The sphere of the soma that a root hangs on, if it is meshed.
-fn sphere_of(node: &SkeletonNode, somata: &[Option<SomaSphere>]) -> Option<SomaSphere> {
+fn sphere_of<'a>(node: &SkeletonNode, somata: &'a [Option<SomaSphere>]) -> Option<&'a SomaSphere> {
     match node.root {
-        Root::Soma(soma) | Root::Insertion(soma) => somata[soma as usize],
+        Root::Soma(soma) | Root::Insertion(soma) => somata[soma as usize].as_ref(),
         Root::Free => None,
     }
 }
 
-/// The foot of a ring that is beyond its soma's sphere.
+/// The foot of a ring that is beyond its soma's surface.
 fn foot(ring: &Point, somata: &[Option<SomaSphere>]) -> Option<Point> {
     let sphere = sphere_of(&ring.node, somata)?;
     let way = ring.rest - sphere.center;
-    let beyond = way.length() - sphere.radius;
-    let center = sphere.center + way * (sphere.radius / way.length());
+    let surface = sphere.towards(ring.rest);
+    let beyond = way.length() - surface;
+    let center = sphere.center + way * (surface / way.length());
     let node = SkeletonNode {
         center,
         radius: ring.node.radius + FLARE * beyond,
         ..ring.node
     };
-    (beyond > 0.01 * sphere.radius).then_some(Point {
+    (beyond > 0.01 * surface).then_some(Point {
         node,
         rest: center,
         role: Role::Foot,
@@ -260,7 +261,8 @@ fn origin(root: &Point, somata: &[Option<SomaSphere>]) -> Option<Origin> {
     let (Root::Soma(soma) | Root::Insertion(soma)) = root.node.root else {
         return None;
     };
-    let beyond = |sphere: SomaSphere| root.rest.distance(sphere.center) - sphere.radius;
-    let way = somata[soma as usize].map_or(0.0, beyond).max(0.0);
+    let beyond =
+        |sphere: &SomaSphere| root.rest.distance(sphere.center) - sphere.towards(root.rest);
+    let way = somata[soma as usize].as_ref().map_or(0.0, beyond).max(0.0);
     Some(Origin { soma, way })
 }

@@ -11,6 +11,7 @@ use super::boxes::{Bounds, Boxes};
 use super::geometry::{closest, nearest_to};
 use super::paths::OnSegment;
 use super::rods::Rods;
+use crate::tracing::SomaSphere;
 
 /// Two segments may touch if the way between them is at most this many times the sum of their radii: a
 /// branch leaves its parent's surface only after such a way.
@@ -46,8 +47,28 @@ pub(super) struct SomaContact {
     pub(super) soma: u32,
     /// Share of the way from the upper end where it is nearest.
     pub(super) s: f64,
-    /// How far it is within the soma's sphere (µm).
+    /// How far it is within the soma, as it was traced (µm).
     pub(super) depth: f64,
+}
+
+/// Places along a segment at which it is compared with a soma that is no sphere.
+const SOMA_PLACES: u32 = 8;
+
+/// Share of the way along a segment at which it is deepest within a soma: of a sphere that is where it is nearest to the
+/// center.
+pub(super) fn deepest(soma: &SomaSphere, ends: [DVec3; 2]) -> f64 {
+    let nearest = nearest_to(soma.center, ends);
+    if soma.is_sphere() {
+        return nearest;
+    }
+    let beyond = |s: f64| {
+        let place = ends[0].lerp(ends[1], s);
+        place.distance(soma.center) - soma.towards(place)
+    };
+    let places = (0..=SOMA_PLACES).map(|i| f64::from(i) / f64::from(SOMA_PLACES));
+    let places = places.chain([nearest]).map(|s| (beyond(s), s));
+    let deepest = places.min_by(|a, b| a.0.total_cmp(&b.0));
+    deepest.map_or(nearest, |(_, s)| s)
 }
 
 /// How far apart segments may be to be found: so many radii of the thinner and of the thicker one.
@@ -198,7 +219,7 @@ impl View<'_> {
         } = found;
         for (soma, sphere) in self.rods.somata.iter().enumerate() {
             let Some(sphere) = sphere else { continue };
-            let bounds = Bounds::around([sphere.center; 2], SOMA_REACH * sphere.radius);
+            let bounds = Bounds::around([sphere.center; 2], SOMA_REACH * sphere.farthest());
             self.boxes.overlapping(&bounds, |segment| {
                 if looks == 0 {
                     *complete = false;
@@ -215,22 +236,23 @@ impl View<'_> {
     }
 
     fn soma_contact(&self, segment: u32, soma: u32) -> Option<SomaContact> {
-        let sphere = self.rods.somata[soma as usize]?;
+        let sphere = self.rods.somata[soma as usize].as_ref()?;
         let ends = self.ends(segment);
-        let s = nearest_to(sphere.center, ends);
+        let s = deepest(sphere, ends);
         let radius = self.radius_at(segment, s);
-        let distance = ends[0].lerp(ends[1], s).distance(sphere.center);
-        let near = SOMA_REACH * sphere.radius + (1.0 + self.margin.share()) * radius;
+        let place = ends[0].lerp(ends[1], s);
+        let (distance, surface) = (place.distance(sphere.center), sphere.towards(place));
+        let near = SOMA_REACH * surface + (1.0 + self.margin.share()) * radius;
         let origin = self.rods.paths.origin(segment);
         let own = origin.filter(|o| o.soma == soma).is_some_and(|origin| {
             let way = self.on_segment(segment, s).arc + origin.way;
-            way <= OWN_WAY.0 * radius + OWN_WAY.1 * sphere.radius
+            way <= OWN_WAY.0 * radius + OWN_WAY.1 * surface
         });
         (distance < near && !own).then_some(SomaContact {
             segment,
             soma,
             s,
-            depth: sphere.radius + radius - distance,
+            depth: surface + radius - distance,
         })
     }
 }

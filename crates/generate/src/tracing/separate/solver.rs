@@ -4,9 +4,9 @@
 use glam::DVec3;
 
 use super::elastic::Elastic;
-use super::geometry::{closest, direction, nearest_to};
+use super::geometry::{closest, direction};
 use super::rods::Rods;
-use super::search::{Found, Margin, SOMA_REACH, SomaContact, search};
+use super::search::{Found, Margin, SOMA_REACH, SomaContact, deepest, search};
 use super::side::{self, CROSSED, DEEP, Pair, Sides};
 use super::spread::{GAP, Spread};
 use crate::stop::Stop;
@@ -134,17 +134,18 @@ impl Solver<'_> {
 
     fn leave_soma(&mut self, contact: SomaContact) {
         let rods = self.elastic.rods;
-        let Some(sphere) = rods.somata[contact.soma as usize] else {
+        let Some(sphere) = &rods.somata[contact.soma as usize] else {
             return;
         };
         let segment = Segment::new(&self.elastic, contact.segment);
-        let s = nearest_to(sphere.center, segment.ends(&self.elastic));
+        let s = deepest(sphere, segment.ends(&self.elastic));
         let out = segment.at(&self.elastic, s) - sphere.center;
+        let surface = sphere.surface(direction(out));
         let radius = segment.radius(rods, s);
-        let lack = SOMA_REACH * sphere.radius + radius * (1.0 + GAP) - out.length();
+        let lack = SOMA_REACH * surface + radius * (1.0 + GAP) - out.length();
         let weight = segment.weight(&self.elastic, s);
         if lack > 0.0 && weight > 0.0 {
-            let most = SOMA_STEP.0 * radius + SOMA_STEP.1 * sphere.radius;
+            let most = SOMA_STEP.0 * radius + SOMA_STEP.1 * surface;
             let push = direction(out) * (lack.min(most) / weight);
             segment.push(&mut self.elastic, s, push);
         }

@@ -1,6 +1,7 @@
 //! Whole separations of small cells.
 
 use glam::{DVec3, dvec3};
+use neurotess_morphology::SomaShape;
 use proptest::prelude::*;
 
 use super::geometry::closest;
@@ -166,11 +167,7 @@ fn a_branch_that_comes_back_to_its_parent_is_moved_away() {
 }
 
 fn sphere(center: DVec3, radius: f64) -> Option<SomaSphere> {
-    Some(SomaSphere {
-        center,
-        radius,
-        reach: 1.0,
-    })
+    Some(SomaSphere::new(SomaShape::sphere(center, radius), 1.0, 1.0))
 }
 
 #[test]

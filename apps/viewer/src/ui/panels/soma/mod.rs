@@ -210,9 +210,9 @@ fn measures(state: &State, id: SourceId, edit: &SomaEdit, ui: &mut Ui) {
         "soma figures",
         &[
             ("volume", measured(soma.volume, "µm³")),
-            ("volume / sphere's", beside(soma.volume, soma.sphere_volume)),
+            ("volume / sphere's", beside(soma.volume, soma.traced_volume)),
             ("area", measured(soma.area, "µm²")),
-            ("area / sphere's", beside(soma.area, soma.sphere_area)),
+            ("area / sphere's", beside(soma.area, soma.traced_area)),
             (
                 "computed in",
                 format!("{:.1} ms", 1e3 * source.generated.soma_seconds),

@@ -13,6 +13,15 @@
 //! Samples without any thickness, two or more, are an outline in whatever order they hang: cylinders of no
 //! radius are none.
 
+mod cones;
+mod directions;
+mod outline;
+mod shape;
+mod smooth;
+mod stack;
+
+pub use shape::SomaShape;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -28,6 +37,13 @@ const CONTOUR_GAP: f64 = 0.2;
 const CONTOUR_ROUNDNESS: f64 = 0.25;
 /// Greatest distance of a contour from its plane, as a part of its radius. By eye.
 const CONTOUR_BULGE: f64 = 0.25;
+/// Outlines in one block are apart where z changes by more than this many of its usual steps.
+const PLANE_JUMP: f64 = 4.0;
+/// Greatest gap between the ends of an outline in such a block, as a part of its length: outlines of few samples have
+/// gaps of 0.4 (`c05_stack_in_one_block.asc`), halves of one 0.8 (`c24_outline_not_flat.asc`).
+const PLANE_GAP: f64 = 0.6;
+/// Greatest distance of an outline from its plane that still has the silhouette of the soma: 0.6 in C220197A-P2.h5.
+const TRACED_BULGE: f64 = 0.8;
 /// A contour's constant radius is thinner than this part of its own radius. By eye.
 const CONTOUR_THICKNESS: f64 = 0.05;
 
@@ -68,7 +84,7 @@ impl Soma {
 
     /// The soma that one outline or several, stacked, trace.
     ///
-    /// An outline begins at the first sample and at each that does not hang on the one before.
+    /// An outline begins at the first sample, at each that does not hang on the one before, and where z jumps.
     /// The sphere is that of the outline with the greatest one. Where none is nearly flat, it is the mean
     /// of the samples with their mean distance from it. A single sample is a sphere.
     ///
@@ -79,23 +95,31 @@ impl Soma {
             return Self::from_samples(samples);
         }
         let positions: Vec<DVec3> = samples.iter().map(|s| s.position.as_dvec3()).collect();
-        let follows = |i: usize| samples[i].parent == Some(i as u32 - 1);
-        let starts: Vec<usize> = (0..samples.len())
-            .filter(|&i| i == 0 || !follows(i))
-            .collect();
-        let ends = starts.iter().skip(1).copied().chain([samples.len()]);
-        let largest = starts
-            .iter()
-            .zip(ends)
-            .filter_map(|(&start, end)| flat_outline(&positions[start..end]))
-            .reduce(|best, other| if other.1 > best.1 { other } else { best });
-        let (center, radius) = largest.unwrap_or_else(|| spread(&positions));
+        let (center, radius) =
+            largest(&blocks(&samples, &positions)).unwrap_or_else(|| spread(&positions));
         Self {
             kind: SomaKind::Contour,
             samples,
             center: center.as_vec3(),
             radius: radius as f32,
         }
+    }
+
+    /// The outlines that it was traced by and that go around something; none of other somata. They need not be flat:
+    /// whoever traces follows the focus.
+    pub fn outlines(&self) -> Vec<Vec<DVec3>> {
+        if self.kind != SomaKind::Contour {
+            return Vec::new();
+        }
+        let positions: Vec<DVec3> = self.samples.iter().map(|s| s.position.as_dvec3()).collect();
+        let mut outlines = blocks(&self.samples, &positions);
+        if outlines.iter().all(|outline| outline.len() < 3) {
+            // Without thickness, and linked in another way.
+            let order = chain(&self.samples).unwrap_or_else(|| (0..self.samples.len()).collect());
+            outlines = vec![order.into_iter().map(|i| positions[i]).collect()];
+        }
+        outlines.retain(|outline| encloses(outline, TRACED_BULGE).is_some());
+        outlines
     }
 
     /// The first sample that two others hang on, if any.
@@ -117,6 +141,52 @@ pub fn soma_area_volume(soma: &Soma) -> (f64, f64) {
     }
     let r = f64::from(soma.radius).max(0.0);
     (4.0 * PI * r * r, 4.0 / 3.0 * PI * r * r * r)
+}
+
+/// Samples in a row, divided where z jumps.
+fn blocks(samples: &[SomaSample], positions: &[DVec3]) -> Vec<Vec<DVec3>> {
+    let follows = |i: usize| i > 0 && samples[i].parent == Some(i as u32 - 1);
+    let starts = (0..samples.len()).filter(|&i| !follows(i));
+    let starts: Vec<usize> = starts.chain([samples.len()]).collect();
+    let blocks = starts.windows(2).map(|ends| &positions[ends[0]..ends[1]]);
+    blocks
+        .flat_map(|block| planes(block).into_iter().map(<[DVec3]>::to_vec))
+        .collect()
+}
+
+/// The outlines of a block that holds a stack of them: it is divided where z jumps, if each part goes nearly around by
+/// itself at a height of its own. Else the block is one outline.
+fn planes(block: &[DVec3]) -> Vec<&[DVec3]> {
+    let whole = || vec![block];
+    let steps: Vec<f64> = block.windows(2).map(|w| (w[1].z - w[0].z).abs()).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let Some(most) = sorted.last().filter(|most| **most > 0.0) else {
+        return whole();
+    };
+    let usual = sorted[sorted.len() / 2];
+    let jump = (PLANE_JUMP * usual).max(0.1 * most);
+    let starts = (1..block.len()).filter(|&i| steps[i - 1] > jump);
+    let starts: Vec<usize> = [0].into_iter().chain(starts).chain([block.len()]).collect();
+    let parts = starts.windows(2).map(|ends| &block[ends[0]..ends[1]]);
+    let parts: Vec<&[DVec3]> = parts.collect();
+    let mut heights: Vec<f64> = parts.iter().map(|part| mean(part).z).collect();
+    heights.sort_by(f64::total_cmp);
+    let apart = heights.windows(2).all(|w| w[1] - w[0] > jump);
+    let around = |part: &&[DVec3]| {
+        let length: f64 = part.windows(2).map(|w| w[0].distance(w[1])).sum();
+        part.len() > 2 && part[0].distance(part[part.len() - 1]) <= PLANE_GAP * length
+    };
+    match parts.len() > 1 && apart && parts.iter().all(around) {
+        true => parts,
+        false => whole(),
+    }
+}
+
+/// The greatest sphere of outlines that are nearly flat.
+fn largest(outlines: &[Vec<DVec3>]) -> Option<(DVec3, f64)> {
+    let spheres = outlines.iter().filter_map(|outline| flat_outline(outline));
+    spheres.reduce(|best, other| if other.1 > best.1 { other } else { best })
 }
 
 fn mean(positions: &[DVec3]) -> DVec3 {
@@ -190,23 +260,43 @@ fn without_thickness(samples: &[SomaSample], positions: &[DVec3]) -> Option<(DVe
 
 /// The sphere of an outline that is nearly flat: see the head of the file.
 fn flat_outline(outline: &[DVec3]) -> Option<(DVec3, f64)> {
+    match encloses(outline, CONTOUR_BULGE) {
+        None if is_needle(outline)? => Some(spread(outline)),
+        sphere => sphere,
+    }
+}
+
+/// Whether an outline encloses next to nothing; none if it has no area at all.
+fn is_needle(outline: &[DVec3]) -> Option<bool> {
+    let (_, radius, _) = vector_area(outline)?;
+    let round = 2.0 * PI * radius / perimeter(outline);
+    Some(round * round < CONTOUR_ROUNDNESS)
+}
+
+fn perimeter(outline: &[DVec3]) -> f64 {
+    let corners = outline.iter().zip(outline.iter().cycle().skip(1));
+    corners.map(|(&a, &b)| a.distance(b)).sum()
+}
+
+/// Mean of the samples, radius of equal area and unit normal.
+fn vector_area(outline: &[DVec3]) -> Option<(DVec3, f64, DVec3)> {
     let middle = mean(outline);
-    let corners = || outline.iter().zip(outline.iter().cycle().skip(1));
-    let normal: DVec3 = corners()
-        .map(|(&a, &b)| (a - middle).cross(b - middle))
-        .sum();
+    let corners = outline.iter().zip(outline.iter().cycle().skip(1));
+    let normal: DVec3 = corners.map(|(&a, &b)| (a - middle).cross(b - middle)).sum();
     let radius = (normal.length() / 2.0 / PI).sqrt();
-    let normal = normal.try_normalize()?;
+    Some((middle, radius, normal.try_normalize()?))
+}
+
+/// Centroid and radius of equal area of an outline that goes around something and is no farther from its plane than
+/// this share of the radius.
+fn encloses(outline: &[DVec3], most: f64) -> Option<(DVec3, f64)> {
+    let (middle, radius, normal) = vector_area(outline)?;
+    let corners = || outline.iter().zip(outline.iter().cycle().skip(1));
     let bulge = outline
         .iter()
         .map(|&p| (p - middle).dot(normal).abs())
         .fold(0.0, f64::max);
-    let perimeter: f64 = corners().map(|(&a, &b)| a.distance(b)).sum();
-    let round = 2.0 * PI * radius / perimeter;
-    if round * round < CONTOUR_ROUNDNESS {
-        return Some(spread(outline));
-    }
-    if bulge > CONTOUR_BULGE * radius {
+    if is_needle(outline)? || bulge > most * radius {
         return None;
     }
     let weighted = |(&a, &b): (&DVec3, &DVec3)| {
@@ -244,11 +334,15 @@ fn chain(samples: &[SomaSample]) -> Option<Vec<usize>> {
     (chain.len() == samples.len()).then_some(chain)
 }
 
-/// Radius of the sphere with the frusta's area; where they have none, the thickest sample's.
+/// Radius of the sphere with the area of the frusta and of the ends' faces; where they have none, the thickest sample's.
 fn cylinders_radius(samples: &[SomaSample]) -> f64 {
     let lateral: f64 = links(samples).map(|(a, b)| area(a, b)).sum();
     if lateral > 0.0 {
-        return (lateral / 4.0 / PI).sqrt();
+        let counts = child_counts(samples);
+        let linked = |i: usize| counts[i] + u32::from(samples[i].parent.is_some());
+        let ends = (0..samples.len()).filter(|&i| linked(i) == 1);
+        let face = |i: usize| PI * f64::from(samples[i].radius.max(0.0)).powi(2);
+        return ((lateral + ends.map(face).sum::<f64>()) / 4.0 / PI).sqrt();
     }
     samples
         .iter()
@@ -309,7 +403,8 @@ mod tests {
             (0., 9., 0., 5., Some(1)),
         ]);
         assert_eq!(soma.kind, SomaKind::Cylinders);
-        assert!((soma.radius - (90.0_f32 / 4.0).sqrt()).abs() < 1e-5);
+        // Sides of 90 π and two faces of 25 π.
+        assert!((soma.radius - (140.0_f32 / 4.0).sqrt()).abs() < 1e-5);
     }
 
     #[test]
@@ -445,6 +540,81 @@ mod tests {
             (in_one_place.kind, in_one_place.radius),
             (SomaKind::Cylinders, 0.0)
         );
+    }
+
+    /// Samples in a row, as a block of Neurolucida has them.
+    fn block(rows: &[[f32; 3]]) -> Soma {
+        let sample = |(i, &row): (usize, &[f32; 3])| SomaSample {
+            id: i as i64 + 1,
+            position: Vec3::from_array(row),
+            radius: 0.28,
+            parent: i.checked_sub(1).map(|p| p as u32),
+        };
+        Soma::from_outlines(rows.iter().enumerate().map(sample).collect())
+    }
+
+    /// Fault F17: the outlines of `c05_stack_in_one_block.asc`, of which the larger one has this radius.
+    #[test]
+    fn a_block_whose_z_jumps_is_a_stack() {
+        let rows = [
+            [-11.25, -22.78, 1.66],
+            [-13.04, -17.52, 1.66],
+            [-15.60, -11.61, 1.66],
+            [-15.39, -4.32, 1.66],
+            [-12.88, 1.02, 1.66],
+            [-11.10, 3.84, 1.66],
+            [-4.00, 1.00, 1.66],
+            [-2.00, -10.00, 1.66],
+            [-5.00, -20.00, 1.66],
+            [-8.55, 6.01, -4.57],
+            [-6.64, 3.38, -4.57],
+            [-3.51, -3.52, -4.57],
+            [-5.00, -14.00, -4.57],
+            [-10.00, -17.00, -4.57],
+            [-13.00, -8.00, -4.57],
+        ];
+        let soma = block(&rows);
+        assert!((soma.radius - 9.08).abs() < 0.005, "{}", soma.radius);
+        assert_eq!(
+            soma.outlines().iter().map(Vec::len).collect::<Vec<_>>(),
+            [9, 6]
+        );
+    }
+
+    /// One outline in two depths is no stack: its halves do not go around anything.
+    #[test]
+    fn an_outline_that_is_not_flat_is_no_stack() {
+        let [a, b] = [0.0, 3.0];
+        let rows = [
+            [10., 0., a],
+            [7., 7., a],
+            [0., 10., a],
+            [-7., 7., b],
+            [-10., 0., b],
+            [-7., -7., b],
+            [0., -10., b],
+            [7., -7., a],
+        ];
+        let radius = block(&rows).radius;
+        // The mean distance from the mean of the samples: not flat.
+        assert!((radius - 9.53).abs() < 0.01, "{radius}");
+        let tilted = |i: i16| {
+            let (sin, cos) = (f32::from(i) * std::f32::consts::PI / 12.0).sin_cos();
+            [8.0 * cos, 8.0 * sin, 1.0 * cos]
+        };
+        let rows: Vec<[f32; 3]> = (0..24).map(tilted).collect();
+        assert_eq!(block(&rows).outlines().len(), 1);
+    }
+
+    /// Fault F23, `c04_soma3_dend_mid.swc`.
+    #[test]
+    fn the_faces_at_the_ends_of_a_chain_count() {
+        let soma = soma(&[
+            (0., 0., 0., 10., None),
+            (0., 0., 2., 10., Some(0)),
+            (0., 0., 4., 10., Some(1)),
+        ]);
+        assert!((soma.radius - 8.366).abs() < 1e-3, "{}", soma.radius);
     }
 
     #[test]
