@@ -16,9 +16,9 @@ use super::path::{Path, Plan};
 
 /// Radii that a crease is from its traced point at most: what a turn of 130° asks for.
 const MAX_REACH: f64 = 2.4;
-/// Radii of a crease that is told from a circle: that of a turn by 39°. Below, a ring is a sixteenth too thin inside at
+/// Radii of a crease that is told from a circle: that of a turn by 44°. Below, a ring is a fourteenth too thin inside at
 /// most, and costs no memory of its own.
-const MIN_REACH: f64 = 1.06;
+const MIN_REACH: f64 = 1.08;
 /// Cosine of the sharpest turn (150°) that gets a crease: beyond, both legs are one tube.
 const MIN_COS: f64 = -0.866;
 /// Share of a leg that the creases at its ends may take. With 0.9 there are 4 % more crossings beside forks, with 0.5

@@ -237,7 +237,12 @@ fn fillet_on_a_soma_is_round() {
         radius: 0.5,
     };
     let soma = 8.0;
-    let generated = generate(&grow(&[twig], Some(soma)), &GenerateOptions::default());
+    let mut cell = grow(&[twig], Some(soma));
+    // Straight away from the soma: one that leaves it at a slant has a fillet as slanted.
+    for (point, place) in cell.points.iter_mut().zip(0_u8..) {
+        point.position = Vec3::X * (9.0 + 3.0 * f32::from(place));
+    }
+    let generated = generate(&cell, &GenerateOptions::default());
     let mesh = generated.expect("meshed").mesh;
     let insets = mesh.tracing.iter().filter(|t| t.role == Role::Inset);
     let insets: Vec<_> = insets.collect();

@@ -222,7 +222,12 @@ fn vertices_are_the_reference_s() {
                     let of_soma = tracing.map(|t| mesh.tracing[t as usize].role == Role::Soma);
                     if !of_soma.contains(&true) && vertex.radius > 0.0 {
                         let apart = (vertex.radius - reference.radius).abs();
-                        assert!(apart <= 1e-5 * reference.radius, "radius");
+                        // The cubic goes by lengths of tangents, which devices round otherwise: 1.05e-5 on lavapipe.
+                        let [made, expected] = [vertex.radius, reference.radius];
+                        assert!(
+                            apart <= 2e-5 * expected,
+                            "radius {made}, not {expected}: {selected:?} {at:?}"
+                        );
                     }
                     let point = &mesh.tracing[vertex.color_key as usize];
                     assert_eq!(point.sample.0, reference.point, "{selected:?} {at:?}");

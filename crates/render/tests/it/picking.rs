@@ -114,7 +114,10 @@ fn states_and_cuts_leave_out_what_they_say() {
     let (soma, all) = kinds(0, None);
     assert!(soma > 100 && all > soma);
     let only_soma = kinds(WITHOUT_NEURITES, None);
-    assert!(only_soma.0 >= soma && only_soma.0 == only_soma.1);
+    assert!(
+        only_soma.0 >= soma && only_soma.1 < only_soma.0 + 8,
+        "but for quads between rings: {soma} {only_soma:?}"
+    );
     let (rest, neurites) = kinds(WITHOUT_SOMA, None);
     assert!(
         rest < 8 && neurites > 200,

@@ -152,7 +152,7 @@ fn soma(source: &Source, ui: &mut egui::Ui) {
             "area of the mesh",
             measured(somata().map(|s| s.area).sum(), "µm²"),
         ),
-        ("sphere's volume", measured(first.traced_volume, "µm³")),
+        ("traced volume", measured(first.traced_volume, "µm³")),
         ("samples", samples(source).to_string()),
     ];
     if generated.somata.len() > 1 {

@@ -43,7 +43,7 @@ pub(crate) fn show(state: &mut State, id: SourceId, ui: &mut Ui) {
             state.requests.push(Edit::ResetRings(id).into());
         }
     });
-    ui.weak("0: on the soma's sphere, 1: at the first traced point");
+    ui.weak("0: on the traced soma, 1: at the first traced point");
     for row in &rows {
         self::row(state, id, row, ui);
     }
