@@ -21,6 +21,8 @@ mod errors;
 mod json;
 mod options;
 #[cfg(feature = "render")]
+mod page;
+#[cfg(feature = "render")]
 mod picture;
 mod surface;
 mod work;
@@ -43,6 +45,8 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<circuit::Report>()?;
     #[cfg(feature = "render")]
     picture::add_to(module)?;
+    #[cfg(feature = "render")]
+    module.add_function(wrap_pyfunction!(page::page, module)?)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)
 }

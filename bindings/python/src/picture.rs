@@ -70,9 +70,9 @@ type View = ([f64; 3], [f64; 3], [f64; 3], f64, bool);
 type GivenCircuit = (PathBuf, Option<Vec<(u32, u32)>>);
 
 /// By cell the numbers of its points and that of its somata; what they are, and their unit.
-type GivenValues<'py> = (Vec<(PyReadonlyArray1<'py, f32>, f32)>, String, String);
+pub(crate) type GivenValues<'py> = (Vec<(PyReadonlyArray1<'py, f32>, f32)>, String, String);
 
-fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnValues> {
+pub(crate) fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnValues> {
     let of_cell = |(points, soma): &(PyReadonlyArray1<'_, f32>, f32)| {
         Ok(CellValues {
             points: points.as_slice()?.to_vec(),

@@ -27,19 +27,26 @@ pub struct OwnValues {
     pub unit: String,
 }
 
+impl OwnValues {
+    /// The number of each tracing point by cell, NaN where there is none; and the numbers at both ends of a scale: those of
+    /// `range`, or the least and the greatest.
+    pub fn spread(&self, cells: &[Cell<'_>], range: Option<[f32; 2]>) -> (Vec<Vec<f32>>, [f32; 2]) {
+        let pairs = cells.iter().zip(&self.cells);
+        let shown: Vec<Vec<f32>> = pairs.map(|(cell, values)| on_cell(cell, values)).collect();
+        let finite = || shown.iter().flatten().copied().filter(|v| v.is_finite());
+        let [low, high] = range.unwrap_or_else(|| {
+            let least = finite().reduce(f32::min).unwrap_or(0.0);
+            [least, finite().reduce(f32::max).unwrap_or(0.0)]
+        });
+        let high = if high > low { high } else { low + 1.0 };
+        (shown, [low, high])
+    }
+}
+
 /// Colors of cells by numbers of one's own: of the scheme's range, or from the least to the greatest number. What has
 /// none is gray.
 pub fn by_values(cells: &[Cell<'_>], values: &OwnValues, scheme: &ColorScheme) -> Coloring {
-    let pairs = || cells.iter().zip(&values.cells);
-    let shown: Vec<Vec<f32>> = pairs()
-        .map(|(cell, values)| on_cell(cell, values))
-        .collect();
-    let finite = || shown.iter().flatten().copied().filter(|v| v.is_finite());
-    let [low, high] = scheme.range.unwrap_or_else(|| {
-        let least = finite().reduce(f32::min).unwrap_or(0.0);
-        [least, finite().reduce(f32::max).unwrap_or(0.0)]
-    });
-    let high = if high > low { high } else { low + 1.0 };
+    let (shown, [low, high]) = values.spread(cells, scheme.range);
     let key = |&value: &f32| match value.is_nan() {
         true => category(0),
         false => fraction((value - low) / (high - low)),

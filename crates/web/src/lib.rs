@@ -36,4 +36,4 @@ pub use page::{MAX_PAGE_BYTES, Page, PageOptions, page};
 pub use recording::PageRecording;
 pub use schemes::PageScheme;
 pub use shaders::modules;
-pub use shared::shared_page;
+pub use shared::{shared_page, usual_title};

@@ -1,6 +1,7 @@
 //! Values over time, or of one time, in a page.
 
-use neurotess_render::color::CATEGORY_BIT;
+use neurotess_color::{Cell, OwnValues};
+use neurotess_render::color::{CATEGORY_BIT, category};
 use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays};
@@ -20,6 +21,35 @@ pub struct PageRecording {
     pub color_keys: Vec<Vec<u32>>,
     /// By frame, then by cell: its values; NaN where there is none.
     pub frames: Vec<Vec<Vec<f32>>>,
+}
+
+impl PageRecording {
+    /// Numbers of one's own for cells, which do not change; `range`: those at the ends of the scale, if they are not the
+    /// least and the greatest.
+    ///
+    /// They are told in the steps in which a page stores them, so that cells may have any number of points.
+    pub fn still(cells: &[Cell<'_>], values: &OwnValues, range: Option<[f32; 2]>) -> Self {
+        let (shown, range) = values.spread(cells, range);
+        let key = |&value: &f32| match step_of(value, range) {
+            0 => category(0),
+            step => u32::from(step) - 1,
+        };
+        let [low, high] = range;
+        let steps: Vec<f32> = (0..STEPS)
+            .map(|step| low + (high - low) * f32::from(step) / LAST)
+            .collect();
+        Self {
+            title: values.title.clone(),
+            unit: values.unit.clone(),
+            times: Vec::new(),
+            range,
+            color_keys: shown
+                .iter()
+                .map(|of| of.iter().map(key).collect())
+                .collect(),
+            frames: vec![vec![steps; shown.len()]],
+        }
+    }
 }
 
 /// A recording as the page's host reads it.
@@ -90,17 +120,25 @@ impl RecordingData {
     }
 }
 
-/// A value as one of 255 steps of the range, from 1 on; 0 for none.
+/// Values are stored in so many steps.
+const STEPS: u8 = 255;
+/// Number of the last step, from 0 on.
+const LAST: f32 = 254.0;
+
+/// A value as one of [`STEPS`] of the range, from 1 on; 0 for none.
 fn step_of(value: f32, [low, high]: [f32; 2]) -> u8 {
     if !value.is_finite() {
         return 0;
     }
     let share = (value - low) / (high - low);
-    1 + (share.clamp(0.0, 1.0) * 254.0).round() as u8
+    1 + (share.clamp(0.0, 1.0) * LAST).round() as u8
 }
 
 #[cfg(test)]
 mod tests {
+    use neurotess_color::CellValues;
+    use neurotess_mesh::Role;
+
     use super::*;
 
     #[test]
@@ -111,5 +149,47 @@ mod tests {
             [1, 1, 128, 255, 255]
         );
         assert_eq!(step(f32::NAN), 0);
+    }
+
+    #[test]
+    fn still_values_are_those_of_their_points_to_half_a_step() {
+        let text = b"1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 20 0 1 2\n4 3 0 40 0 1 3\n";
+        let read = neurotess_formats::swc::read_bytes(text, "cell", &Default::default());
+        let morphology = read.expect("a cell").morphology;
+        let generated = neurotess_generate::generate(&morphology, &Default::default());
+        let mesh = generated.expect("meshed").mesh;
+        let cell = Cell {
+            name: "",
+            morphology: &morphology,
+            mesh: &mesh,
+            radius_factor: 1.0,
+        };
+        let values = OwnValues {
+            cells: vec![CellValues {
+                points: vec![-80.3, f32::NAN, 41.7],
+                soma: 12.3,
+            }],
+            ..OwnValues::default()
+        };
+        let still = PageRecording::still(&[cell], &values, None);
+        assert_eq!(still.range, [-80.3, 41.7]);
+        let shown = &still.frames[0][0];
+        for (point, &key) in mesh.tracing.iter().zip(&still.color_keys[0]) {
+            let expected = match (point.role, point.sample.0) {
+                (Role::Soma, _) => 12.3,
+                (_, 2) => -80.3,
+                (_, 3) => {
+                    assert_eq!(key, category(0));
+                    continue;
+                }
+                _ => 41.7,
+            };
+            let told = shown[key as usize];
+            assert!((told - expected).abs() <= 0.25, "{told} {expected}");
+            // As the page stores it.
+            assert_eq!(u32::from(step_of(told, still.range)), key + 1);
+        }
+        let steps: Vec<u8> = shown.iter().map(|&v| step_of(v, still.range)).collect();
+        assert_eq!(steps, (1..=STEPS).collect::<Vec<_>>());
     }
 }

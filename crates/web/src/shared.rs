@@ -57,3 +57,15 @@ pub fn shared_page(
     };
     page(cells, &schemes, recording, markers, &options)
 }
+
+/// The title of a page of cells with these names: up to three of them, or how many there are.
+pub fn usual_title(names: &[impl AsRef<str>]) -> String {
+    match names.len() {
+        0..=3 => names
+            .iter()
+            .map(AsRef::as_ref)
+            .collect::<Vec<_>>()
+            .join(", "),
+        n => format!("{n} neurons"),
+    }
+}

@@ -17,6 +17,7 @@ leaves the interpreter to other threads, and Ctrl-C stops it.
 | mesh it | `mesh`, `mesh_many`, `Mesh` |
 | judge a mesh | `Mesh.check`, `check`, `read_mesh` |
 | draw it | `render`, `film`, `Image`, `View` |
+| send it as one HTML page | `html` |
 | use a circuit and its recordings | `Circuit`, `Report` |
 | plot numbers of it | `neurotess.plot` |
 | mesh on a cluster | `neurotess.dask` |
@@ -47,6 +48,7 @@ from ._meshes import Mesh, check, read_mesh
 from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_many
 from ._circuits import Circuit
 from ._reports import Report
+from ._pages import html
 from ._pictures import Image, film, render
 
 TYPE_CHECKING = False
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from ._typed import Camera as Camera
     from ._typed import Markers as Markers
     from ._typed import MeshOptions as MeshOptions
+    from ._typed import PageOptions as PageOptions
     from ._typed import RenderOptions as RenderOptions
     from ._typed import Scene as Scene
     from ._typed import SceneMesh as SceneMesh
@@ -91,6 +94,7 @@ __all__ = [
     "diff",
     "edit",
     "film",
+    "html",
     "mesh",
     "mesh_many",
     "read",
@@ -101,7 +105,7 @@ __all__ = [
 
 
 #: Types of options, which few need.
-TYPED = ("Camera", "Markers", "MeshOptions", "RenderOptions", "Scene", "SceneMesh")
+TYPED = ("Camera", "Markers", "MeshOptions", "PageOptions", "RenderOptions", "Scene", "SceneMesh")
 
 
 def __getattr__(name: str) -> object:

@@ -13,14 +13,16 @@ from ._morphology import Morphology, _with_warnings
 from ._parts import Notice
 from ._nodes import rows_of
 from ._packages import needed
+from ._pages import html
 from ._pictures import Image, render
 from ._reports import Report
-from ._scene import DrawnCircuit
+from ._scene import DrawnCircuit, check_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from typing import Any, Literal
+    from pathlib import Path
+    from typing import Any, Literal, overload
 
     import numpy as np
     import pandas as pd
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._nodes import Nodes
-    from ._typed import MeshOptions, RenderOptions
+    from ._typed import MeshOptions, PageOptions, RenderOptions
 
 
 class Circuit(DrawnCircuit):
@@ -260,6 +262,21 @@ class Circuit(DrawnCircuit):
             files = self.reports.values()
             options["report"] = next((file for file in files if not Report(file).is_of_spikes), None)
         return render(self, **options)
+
+    if TYPE_CHECKING:
+
+        @overload
+        def to_html(self, path: None = None, **options: Unpack[PageOptions]) -> str: ...
+
+        @overload
+        def to_html(self, path: str | os.PathLike[str], **options: Unpack[PageOptions]) -> Path: ...
+
+    def to_html(
+        self, path: str | os.PathLike[str] | None = None, **options: Unpack[PageOptions]
+    ) -> str | Path:
+        """One HTML page of some of its cells, to send: `neurotess.html` with this circuit."""
+        check_names("to_html", html, dict(options))
+        return html(self, path, **options)
 
     def __reduce__(self) -> tuple[type[Circuit], tuple[str]]:
         return type(self), (self._path,)

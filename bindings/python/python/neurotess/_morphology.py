@@ -12,13 +12,16 @@ from ._sources import read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from pathlib import Path
     from typing import IO, Any, TypeAlias, Union, overload
 
     import numpy as np
     import pandas as pd
     from numpy.typing import NDArray
+    from typing_extensions import Unpack
 
     from ._reports import Report
+    from ._typed import PageOptions
 
     File: TypeAlias = Union[str, os.PathLike[str], bytes, IO[bytes], IO[str]]
     Files: TypeAlias = Union[list[Any], tuple[Any, ...]]
@@ -225,6 +228,24 @@ class Morphology:
         Returns what the format cannot hold, such as the header of the file.
         """
         return self._cell.write(path, format, overwrite)
+
+    if TYPE_CHECKING:
+
+        @overload
+        def to_html(self, path: None = None, **options: Unpack[PageOptions]) -> str: ...
+
+        @overload
+        def to_html(self, path: str | os.PathLike[str], **options: Unpack[PageOptions]) -> Path: ...
+
+    def to_html(
+        self, path: str | os.PathLike[str] | None = None, **options: Unpack[PageOptions]
+    ) -> str | Path:
+        """One HTML page to send, in which readers turn the cell: `neurotess.html` with this cell."""
+        from ._pages import html
+        from ._scene import check_names
+
+        check_names("to_html", html, dict(options))
+        return html(self, path, **options)
 
     def to_table(self) -> NDArray[np.void]:
         """A table as SWC has it, with somata: ``id``, ``type``, ``x``, ``y``, ``z``, ``radius``, ``parent``.

@@ -20,6 +20,7 @@ __all__ = [
     "Drawing",
     "diff",
     "color_scale",
+    "page",
     "png",
     "main",
 ]
@@ -238,5 +239,14 @@ class Drawing:
     def pick(self, view: _View, size: list[int], at: list[float], reach: float) -> dict[str, Any] | None: ...
     def close(self) -> None: ...
 
+def page(
+    cells: list[Cell],
+    circuit: tuple[Circuit, list[tuple[int, int]]] | None,
+    recipe: Recipe,
+    keywords: dict[str, Any],
+    values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
+    path: _Path | None,
+    force: bool,
+) -> str | None: ...
 def color_scale(name: str) -> list[Any] | None: ...
 def png(pixels: NDArray[np.uint8], transparent: bool) -> bytes: ...

@@ -27,6 +27,7 @@ class DrawnCircuit:
     """What pictures take of a `Circuit`."""
 
     _path: str
+    _circuit: _neurotess.Circuit
 
     @property
     def reports(self) -> dict[str, str]:

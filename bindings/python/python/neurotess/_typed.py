@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     Drawable: TypeAlias = Union[Morphology, DrawnCircuit, File, Any]
 
 ColorBy = Literal["type", "neurite", "section", "order", "radius", "depth", "neuron", "value"]
+OwnColormap = Literal["viridis", "magma", "inferno", "plasma", "cividis"]
 Side = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
 
 
@@ -161,3 +162,31 @@ class RenderOptions(TypedDict, total=False):
     cache: bool
     gpu_memory: int | str | None
     adapter: str | None
+
+
+class PageOptions(TypedDict, total=False):
+    """The options of `html`."""
+
+    color_by: ColorBy | None
+    values: Values | None
+    values_title: str | None
+    unit: str | None
+    range: tuple[float, float] | None
+    palette: str | os.PathLike[str] | Mapping[str, Color] | None
+    colormap: OwnColormap | None
+    background: Color | None
+    title: str | None
+    least_width: float | None
+    radius_factor: float | None
+    radius: float | None
+    min_radius: float | None
+    soma: Literal["fem", "sphere", "profile", "none"] | None
+    ring: Mapping[int, float] | None
+    types: Sequence[str | int] | str | None
+    nodes: Nodes | None
+    node_set: str | None
+    population: str | None
+    region: tuple[Sequence[float], Sequence[float]] | None
+    sample: int | None
+    sample_seed: int | None
+    force: bool

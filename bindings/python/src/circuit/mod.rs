@@ -32,7 +32,7 @@ const KEPT: usize = 64;
 /// A circuit or a scene.
 #[pyclass(frozen, module = "neurotess._neurotess")]
 pub(crate) struct Circuit {
-    circuit: Arc<circuits::Circuit>,
+    pub(crate) circuit: Arc<circuits::Circuit>,
 }
 
 /// Coarse meshes by the template, in the cell's own coordinates.
@@ -375,7 +375,7 @@ fn kept(
     Ok(mesh)
 }
 
-fn node_ref((population, row): (u32, u32)) -> NodeRef {
+pub(crate) fn node_ref((population, row): (u32, u32)) -> NodeRef {
     NodeRef { population, row }
 }
 

@@ -10,7 +10,7 @@ use neurotess::coloring::{Cell, ColorScheme, MarkerSet, OwnColors};
 use neurotess::render::color::{CATEGORY_BIT, Rgb};
 use neurotess::render::{Look, Marker, MarkerSettings, Placement};
 use neurotess::web::{
-    MAX_PAGE_BYTES, PageCell, PageMarkers, PageOptions, PageRecording, shared_page,
+    MAX_PAGE_BYTES, PageCell, PageMarkers, PageOptions, PageRecording, shared_page, usual_title,
 };
 use serde::Serialize;
 
@@ -174,7 +174,11 @@ impl Content<'_> {
         let neurons = self.placements.len();
         let least_width = self.args.least_width.map(|width| width as f32);
         PageOptions {
-            title: self.args.title.clone().unwrap_or_else(|| title(self.names)),
+            title: self
+                .args
+                .title
+                .clone()
+                .unwrap_or_else(|| usual_title(self.names)),
             background: self.args.background.map(|color| color.0),
             palette: self.render.base_palette(),
             own_colors: self.own_colors(),
@@ -211,14 +215,6 @@ fn marker_legend(set: &MarkerSet) -> Vec<(Rgb, String)> {
             .map(|(color, end)| (color, format!("{} {end}", set.legend.title())))
             .into(),
         _ => set.legend.entries().to_vec(),
-    }
-}
-
-/// The names of up to three cells, or how many there are.
-fn title(names: &[String]) -> String {
-    match names.len() {
-        0..=3 => names.join(", "),
-        n => count(n, "neuron"),
     }
 }
 

@@ -39,6 +39,7 @@ pub(crate) use coloring::{by, stem};
 pub use in_memory::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};
 use job::RenderJob;
 use meshes::SceneMeshes;
+pub use palette::palette;
 pub(crate) use palette::{PaletteArg, PaletteParser, SetColor};
 pub(crate) use scene::RenderScene;
 pub(crate) use scene::read as read_scene;

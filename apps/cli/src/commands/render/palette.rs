@@ -18,21 +18,28 @@ pub(crate) struct PaletteArg(pub(super) PaletteFile);
 
 impl PaletteArg {
     fn parse(text: &str) -> Result<Self, String> {
-        if let Ok(palette) = text.parse::<Palette>() {
-            return Ok(Self(PaletteFile {
-                base: Some(palette),
-                ..PaletteFile::default()
-            }));
-        }
-        let path = Path::new(text);
-        if path.extension().is_none() && !path.exists() {
-            let names = Palette::ALL.map(Palette::name).join(", ");
-            return Err(format!("use {names} or a palette's file, as in mine.toml"));
-        }
-        let content = read_regular(path).map_err(|e| format!("{text}: cannot be read: {e}"))?;
-        let file = PaletteFile::parse(&content).map_err(|e| e.of(text))?;
-        Ok(Self(file))
+        palette(text).map(Self)
     }
+}
+
+/// A palette by its name, or of a file.
+///
+/// # Errors
+/// There is no such name, or the file is none: what is needed.
+pub fn palette(text: &str) -> Result<PaletteFile, String> {
+    if let Ok(palette) = text.parse::<Palette>() {
+        return Ok(PaletteFile {
+            base: Some(palette),
+            ..PaletteFile::default()
+        });
+    }
+    let path = Path::new(text);
+    if path.extension().is_none() && !path.exists() {
+        let names = Palette::ALL.map(Palette::name).join(", ");
+        return Err(format!("use {names} or a palette's file, as in mine.toml"));
+    }
+    let content = read_regular(path).map_err(|e| format!("{text}: cannot be read: {e}"))?;
+    PaletteFile::parse(&content).map_err(|e| e.of(text))
 }
 
 /// Reads [`PaletteArg`]s; shells complete the names.

@@ -1,0 +1,164 @@
+"""Cells as one HTML page."""
+
+from __future__ import annotations
+
+import os
+
+from . import _neurotess, _options
+from ._errors import OptionError, RenderError
+from ._scene import SELECTION, DrawnCircuit, _cells, _chosen, _with_colors
+from ._sources import is_alone
+from ._values import values_of
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+    from typing import Any, Literal, overload
+
+    from typing_extensions import Unpack
+
+    from ._colors import Color
+    from ._nodes import Nodes
+    from ._typed import ColorBy, Drawable, OwnColormap, PageOptions
+    from ._values import Told, Values
+
+if TYPE_CHECKING:
+
+    @overload
+    def html(what: Drawable | Iterable[Any], path: None = None, **options: Unpack[PageOptions]) -> str: ...
+
+    @overload
+    def html(
+        what: Drawable | Iterable[Any], path: str | os.PathLike[str], **options: Unpack[PageOptions]
+    ) -> Path: ...
+
+
+def html(
+    what: Drawable | Iterable[Any],
+    path: str | os.PathLike[str] | None = None,
+    *,
+    color_by: ColorBy | None = None,
+    values: Values | None = None,
+    values_title: str | None = None,
+    unit: str | None = None,
+    range: tuple[float, float] | None = None,
+    palette: str | os.PathLike[str] | Mapping[str, Color] | None = None,
+    colormap: OwnColormap | None = None,
+    background: Color | None = None,
+    title: str | None = None,
+    least_width: float | None = None,
+    radius_factor: float | None = None,
+    radius: float | None = None,
+    min_radius: float | None = None,
+    soma: Literal["fem", "sphere", "profile", "none"] | None = None,
+    ring: Mapping[int, float] | None = None,
+    types: Sequence[str | int] | str | None = None,
+    nodes: Nodes | None = None,
+    node_set: str | None = None,
+    population: str | None = None,
+    region: tuple[Sequence[float], Sequence[float]] | None = None,
+    sample: int | None = None,
+    sample_seed: int | None = None,
+    force: bool = False,
+) -> str | Path:
+    """One HTML page to send, in which readers turn cells, color them and point at them: of a cell or a file (or whatever
+    `mesh` takes), of several of them, or of a `Circuit`. It asks nothing of any server.
+
+    Without a `path` the page is returned as text. With one it is written, whole or not at all, and the path is returned.
+    It is the page of ``neurotess html``, whose options these are; no graphics card is needed to make it.
+
+    `color_by`, `palette`, `colormap` (one of neurotess, by its name) and `range` are what the page begins with, as in
+    `render`. `background`: else light or dark, as the reader's system is. `title` is that of the page: else the names of
+    the cells.
+
+    `values`: numbers of your own as in `render`, with a `values_title` and a `unit` for the legend. The page begins with
+    them, unless `color_by` says otherwise. They are stored in 255 steps of their range.
+
+    `least_width`, `radius_factor`, `radius`, `min_radius`, `soma`, `ring` and `types` are those of `render`; of circuits
+    `nodes`, `node_set`, `population`, `region`, `sample` and `sample_seed` select cells, as in `Circuit.select`.
+
+    `force`: replace a file that exists, and make a page of more than 2 MB, too.
+
+    Raises ``ValueError`` for options, and for a page that would be too large; ``FileExistsError``; `MeshError`.
+
+    >>> import neurotess as nt
+    >>> nt.html(nt.synth("granule", points=100), color_by="radius")[:15]
+    '<!doctype html>'
+    """
+    if not _neurotess.CAN_RENDER:
+        raise RenderError("this build makes no pages: build it with the feature 'render'")
+    if path is not None and not force and os.path.exists(path):
+        raise FileExistsError(f"{os.fspath(path)} exists: use force=True, or another name")
+    meshed = {"soma": soma, "ring": ring, "types": types, "radius_factor": radius_factor}
+    recipe = _options.recipe({**meshed, "radius": radius, "min_radius": min_radius})
+    chosen = dict(
+        zip(SELECTION, (nodes, node_set, population, region, sample, sample_seed), strict=True)
+    )
+    given = {
+        "color_by": color_by,
+        "palette": palette,
+        "colormap": colormap,
+        "range": range,
+        "background": background,
+        "least_width": least_width,
+    }
+    keywords = {**_keywords(given), "title": title}
+    if color_by == "value" and values is None:
+        raise OptionError("color_by='value' needs values=, too", "color_by", "values= is needed, too")
+    circuit = None
+    if isinstance(what, DrawnCircuit):
+        if values is not None:
+            raise ValueError("values= are of cells: make a page of them, as of [circuit.morphology(7)]")
+        nodes_of = _chosen(what, chosen)
+        circuit = what._circuit, what._rows(*[None] * 5, 1) if nodes_of is None else nodes_of
+        cells = []
+    else:
+        cells = _cells(what, chosen)
+    told = _told(cells, is_alone(what), values, values_title, unit)
+    try:
+        made = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, told, path, force)
+    except OptionError as error:
+        from ._words import with_given
+
+        raise with_given(error, given) from None
+    if path is None:
+        assert made is not None
+        return made
+    from pathlib import Path
+
+    return Path(path)
+
+
+def _told(cells: list[Any], alone: bool, values: Any, title: str | None, unit: str | None) -> Told | None:
+    if values is None:
+        for name, given in (("values_title", title), ("unit", unit)):
+            if given is not None:
+                raise ValueError(f"{name}={given!r} is of values: give values=, too")
+        return None
+    return values_of(cells, alone, {"values": values, "title": title, "unit": unit})
+
+
+def _keywords(given: dict[str, Any]) -> dict[str, Any]:
+    """Options as the module takes them."""
+    from ._words import NEEDED
+
+    colors = _with_colors(given)
+    ends, width = given["range"], given["least_width"]
+    if ends is not None:
+        try:
+            ends = [float(end) for end in ends]
+        except (TypeError, ValueError):
+            ends = []
+        if len(ends) != 2 or not -float("inf") < ends[0] < ends[1] < float("inf"):
+            raise OptionError(f"range={given['range']!r}: {NEEDED['range']}", "range", NEEDED["range"])
+    if width is not None and not 0 <= width < float("inf"):
+        needed = "0 or a number of pixels is needed"
+        raise OptionError(f"least_width={width!r}: {needed}", "least_width", needed)
+    texts = {name: colors[name] for name in ("color_by", "palette", "colormap", "background")}
+    return {
+        **{name: None if text is None else str(text) for name, text in texts.items()},
+        "set_color": list((colors.get("set_color") or {}).items()),
+        "range": ends,
+        "least_width": width,
+    }
