@@ -43,6 +43,7 @@ def mesh(
     simulation: bool = False,
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     poisson: float | None = None,
+    soma_keep: Literal["volume", "area", "scale"] | None = None,
     soma_scale: float | None = None,
     radii: Literal["traced", "equal-area", "equal-perimeter"] | None = None,
     radius_factor: float | None = None,
@@ -79,7 +80,8 @@ def mesh(
 
     Soma and tracing:
 
-    - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `poisson` (0.3), `soma_scale` (1),
+    - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `soma_keep`: what of it is as traced, ``"volume"``
+      (the default), ``"area"`` or ``"scale"``; `poisson` (0.3), `soma_scale` (1),
       `soma_sphere`, `soma_level`
     - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
     - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
@@ -113,6 +115,7 @@ def mesh(
         "simulation": simulation,
         "soma": soma,
         "poisson": poisson,
+        "soma_keep": soma_keep,
         "soma_scale": soma_scale,
         "radii": radii,
         "radius_factor": radius_factor,
