@@ -33,7 +33,7 @@ pub(crate) fn inside(positions: &[Vec3], triangles: &[[u32; 3]], tree: &Tree) ->
         let (center, radius) = (tree.positions[point], tree.radii[point]);
         let is_near =
             |fork: &usize| tree.positions[*fork].distance(center) < APART * tree.radius(*fork);
-        if radius <= 0.0 || forks.iter().any(|fork| is_near(fork)) {
+        if radius <= 0.0 || forks.iter().any(is_near) {
             continue;
         }
         let reach = APART * radius;
