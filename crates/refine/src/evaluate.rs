@@ -30,8 +30,9 @@ use neurotess_mesh::PatchKind;
 use crate::{Caps, Path, RefineOptions};
 pub(crate) use center_line::{CenterLine, MAX_SWAY, hermite_tangents};
 pub(crate) use corner::{Corner, Jet};
+pub use edges::SOMA_FILLET;
 pub(crate) use edges::{
-    EdgeCurve, EdgeKind, EdgeNormals, MAX_OFFSET, SOMA_FILLET, edge, loft_controls, soma_controls,
+    EdgeCurve, EdgeKind, EdgeNormals, MAX_OFFSET, edge, loft_controls, soma_controls,
 };
 use edges::{OverLength, cubic, first_leg, longer, mix, most_squared};
 use profile::Share;

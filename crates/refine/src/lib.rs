@@ -43,6 +43,7 @@ pub mod wgsl;
 pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;
 pub use decode::{POINTS_OF_SPHERE, SHAPED_U32S};
+pub use evaluate::SOMA_FILLET;
 pub use level::HIGHEST_LEVEL;
 pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
 pub use pack::{dequantized, pack};

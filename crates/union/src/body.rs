@@ -5,7 +5,7 @@ use neurotess_mesh::{SurfaceVertex, Topology, self_intersections_of};
 
 use crate::options::{UnionError, UnionOptions};
 use crate::report::UnionReport;
-use crate::rounds::merge;
+use crate::rounds::{MAX_GROWTH, merge};
 use crate::work::Work;
 
 /// A closed body whose faces look outwards.
@@ -64,8 +64,8 @@ impl Body {
             ..*options
         };
         let mut report = UnionReport::default();
-        // A body that fits crosses less with each round.
-        let most = pairs.len();
+        // There are other bodies to try.
+        let most = MAX_GROWTH * pairs.len();
         match merge(&mut tried, pairs, most, &options, &mut report, check) {
             Ok(left) => Ok(left.is_empty().then_some(tried)),
             Err(UnionError::Failed(_)) => Ok(None),

@@ -12,14 +12,10 @@ use crate::places::places;
 use crate::press::press_in;
 use crate::rejoin::rejoin;
 use crate::report::{Place, UnionReport};
-use crate::rounds::{crossings_of_changed, merge};
+use crate::rounds::{MAX_GROWTH, crossings_of_changed, merge};
 use crate::smooth::{renew_normals, smooth};
 use crate::tunnels::fill;
 use crate::work::Work;
-
-/// Merging is given up where a round leaves this many times the crossing pairs that there were. Of all cells that merge
-/// none has more after a round than before; where rounds make crossings they multiply, and so does memory.
-const MAX_GROWTH: usize = 4;
 
 /// A surface without crossings.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +77,7 @@ pub fn union_stoppable(
         report.pressed_places = pressed.collect();
     }
 
-    let most = MAX_GROWTH * pairs.len();
+    let most = MAX_GROWTH * pairs.len() + work.triangles.len();
     pairs = merge(&mut work, pairs, most, options, &mut report, &check)?;
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
         report.joined = rejoin(&mut work, mesh, options, &check)?;

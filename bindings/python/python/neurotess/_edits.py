@@ -10,7 +10,7 @@ from . import _neurotess, _options
 from ._errors import NeurotessWarning, OptionError, missing_file
 from ._morphology import Morphology, _warn
 from ._sources import cell_of, package_of, read_cell
-from ._words import with_given
+from ._errors import with_given
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

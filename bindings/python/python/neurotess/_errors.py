@@ -7,7 +7,8 @@ import os
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeVar
+    from collections.abc import Mapping
+    from typing import Any, TypeVar
 
     Unreadable = TypeVar("Unreadable", bound="UnreadableFileError")
 
@@ -133,3 +134,13 @@ def option_error(message: str) -> OptionError:
         return OptionError(needed)
     shown = "" if option == "meshes" else f"={given!r}"
     return OptionError(f"{option}{shown}: {needed}", option, needed)
+
+
+def with_given(error: OptionError, options: Mapping[str, Any]) -> OptionError:
+    """The same error with the value as it was given to a function."""
+    import reprlib
+
+    if error.option is None or options.get(error.option) is None:
+        return error
+    given = "" if error.option == "meshes" else f"={reprlib.repr(options[error.option])}"
+    return type(error)(f"{error.option}{given}: {error.needed}", error.option, error.needed)

@@ -19,7 +19,7 @@ def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
     try:
         return _neurotess.Recipe(dict(options))
     except OptionError as error:
-        from ._words import with_given
+        from ._errors import with_given
 
         raise with_given(error, options) from None
 

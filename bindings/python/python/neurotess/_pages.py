@@ -119,7 +119,7 @@ def html(
     try:
         made = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, told, path, force)
     except OptionError as error:
-        from ._words import with_given
+        from ._errors import with_given
 
         raise with_given(error, given) from None
     if path is None:

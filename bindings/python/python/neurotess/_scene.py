@@ -104,7 +104,7 @@ def drawing_of(
         try:
             return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, values, scale, adapter)
         except OptionError as error:
-            from ._words import with_given
+            from ._errors import with_given
 
             raise with_given(error, given) from None
 

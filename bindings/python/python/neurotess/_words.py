@@ -2,13 +2,6 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Any
-
-    from ._errors import OptionError
-
 #: Options that have another name here.
 NAMES = {"mesh": "meshes", "set_color": "palette", "no_legend": "legend", "no_cache": "cache"}
 
@@ -64,13 +57,3 @@ def told(message: str) -> tuple[str | None, str | None, str]:
 
 def _named(option: str) -> str:
     return NAMES.get(option, option)
-
-
-def with_given(error: OptionError, options: Mapping[str, Any]) -> OptionError:
-    """The same error with the value as it was given to a function."""
-    import reprlib
-
-    if error.option is None or options.get(error.option) is None:
-        return error
-    given = "" if error.option == "meshes" else f"={reprlib.repr(options[error.option])}"
-    return type(error)(f"{error.option}{given}: {error.needed}", error.option, error.needed)

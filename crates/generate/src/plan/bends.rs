@@ -22,7 +22,8 @@ const SHARP: f64 = 0.5;
 const VERY_SHARP: f64 = 1.83;
 /// The two rings are this many times as far apart as rings that touch.
 const CLEAR: f64 = 1.1;
-/// How far apart their inner corners are, which share the crease of the bend: as a share of the centers.
+/// How far apart their inner corners are, which share the crease of the bend, as a share of the centers: just so far that
+/// they are two. Not tuned.
 const OF_ASIDE: f64 = 0.15;
 /// The leg is at most this many asides away from the bend: beyond 120°, rings stay nearer to the tip.
 const MAX_ASIDE: f64 = 1.73;

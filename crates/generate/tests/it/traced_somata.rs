@@ -1,11 +1,13 @@
 //! Somata keep what was traced of them: volume, area, outlines; and what is no soma becomes a neurite.
 
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 use neurotess_generate::{GenerateOptions, Generated, SomaKeep, SomaMethod, generate};
-use neurotess_mesh::{PatchKind, Role};
+use neurotess_mesh::{PatchKind, Role, SurfaceMesh};
 use neurotess_morphology::{Morphology, NeuriteKind, Node};
+use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 
 /// Somata of samples `(x, y, z, r, parent)` with straight neurites from places on them.
 fn cell(
@@ -79,6 +81,65 @@ fn meshed(cell: &Morphology, soma_keep: SomaKeep) -> Generated {
     let topology = generated.mesh.topology();
     assert!(topology.closed && topology.euler == 2, "{topology:?}");
     generated
+}
+
+/// Volume (µm³) of the refined soma, closed by fans about the centers of its first rings.
+fn refined_volume(generated: &Generated) -> f64 {
+    let mut mesh = generated.mesh.clone();
+    let is_soma = |v: u32| {
+        let tracing = mesh.vertices[v as usize].tracing;
+        mesh.tracing[tracing as usize].role == Role::Soma
+    };
+    let keep: Vec<bool> = (mesh.patches.iter())
+        .map(|patch| match patch.kind {
+            PatchKind::Soma => true,
+            PatchKind::Loft => patch.corners.into_iter().any(is_soma),
+            PatchKind::Lateral | PatchKind::Cap => false,
+        })
+        .collect();
+    let mut keep = keep.into_iter();
+    mesh.patches.retain(|_| keep.next() == Some(true));
+    let level = LodCriterion::Homogeneous(8);
+    let surface = SurfaceMesh::collect(&Refinement::new(&mesh, level, &RefineOptions::default()));
+    let at = |v: u32| surface.vertices[v as usize].position.as_dvec3();
+    let triangles = &surface.faces.triangles;
+    let edges = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let all: HashSet<[u32; 2]> = edges.clone().collect();
+    let of = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c)) / 6.0;
+    let walls: f64 = triangles
+        .iter()
+        .map(|&[a, b, c]| of(at(a), at(b), at(c)))
+        .sum();
+    let open = edges.filter(|&[a, b]| !all.contains(&[b, a]));
+    let caps = open.map(|[a, b]| {
+        let centers = generated.rings.iter().map(|ring| ring.center);
+        let nearest = centers.min_by(|c, d| {
+            let distance = |center: &DVec3| center.distance_squared(at(a));
+            distance(c).total_cmp(&distance(d))
+        });
+        of(at(b), at(a), nearest.expect("a border is a ring's"))
+    });
+    walls + caps.sum::<f64>()
+}
+
+#[neurotess_testing::test]
+fn what_is_told_of_a_soma_is_what_its_refined_surface_holds() {
+    let sphere = vec![([0.0; 3], 6.0, None)];
+    for soma in [sphere, drop()] {
+        for (start, radius) in [(6.5, 0.3), (7.5, 1.8)] {
+            let cell = cell(&soma, &five(start, radius), false);
+            for keep in [SomaKeep::Volume, SomaKeep::Scale] {
+                let generated = meshed(&cell, keep);
+                let (told, found) = (generated.somata[0].volume, refined_volume(&generated));
+                assert!(
+                    (told / found - 1.0).abs() < 3e-3,
+                    "{start} {radius} {keep:?}: {told}, {found}"
+                );
+            }
+        }
+    }
 }
 
 #[neurotess_testing::test]

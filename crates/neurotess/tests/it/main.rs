@@ -3,6 +3,7 @@
 mod crossings;
 #[cfg(feature = "render")]
 mod examples;
+mod jittered;
 mod real_cells;
 
 neurotess_testing::main!();

@@ -212,7 +212,7 @@ pub(crate) fn loft_controls(a: &Corner, b: &Corner) -> [Vec3; 4] {
 }
 
 /// Width of the fillet around a branch on a soma, in the branch's radii.
-pub(crate) const SOMA_FILLET: f32 = 0.5;
+pub const SOMA_FILLET: f32 = 0.5;
 
 /// Share of the way `over` its trunk's tangent plane that the first leg of a loft takes, and its derivative;
 /// `over_x` is that of the way.

@@ -19,6 +19,10 @@ use neurotess::morphology::Morphology;
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess::union::{UnionOptions, union};
 
+use moved::{moved, share};
+
+mod moved;
+
 /// The level that cells are merged at.
 const LEVEL: u32 = 2;
 
@@ -29,8 +33,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for file in arguments {
         let morphology = read(Path::new(&file), &ReadOptions::default())?.morphology;
         for copy in 0..copies {
-            let share = 0.1 + 2.9 * copy as f32 / copies.saturating_sub(1).max(1) as f32;
-            let jittered = jittered(&morphology, share, copy);
+            let share = share(copy, copies);
+            let jittered = moved(&morphology, share, copy);
             println!(
                 r#"{{"file": {file:?}, "copy": {copy}, "moved": {share}, {}}}"#,
                 merged(&jittered)?
@@ -38,26 +42,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
-}
-
-/// A cell whose points have moved by up to a share of their radii.
-fn jittered(morphology: &Morphology, share: f32, copy: u32) -> Morphology {
-    let mut jittered = morphology.clone();
-    let mut state = u64::from(copy) + 1;
-    let mut random = || {
-        // Steele et al., Fast splittable pseudorandom number generators, 2014: SplitMix64.
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = state;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((bits ^ (bits >> 31)) >> 40) as f32 / (1_u32 << 23) as f32 - 1.0
-    };
-    for point in &mut jittered.points {
-        for coordinate in 0..3 {
-            point.position[coordinate] += share * point.radius * random();
-        }
-    }
-    jittered
 }
 
 /// The figures of merging a cell.
