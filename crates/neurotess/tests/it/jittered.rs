@@ -22,7 +22,7 @@ fn moved_tracings_merge_to_nothing_that_crosses() {
         "h5/C220197A-P2.h5",
     ];
     for file in &files[..cases(2, files.len() as u32) as usize] {
-        let read = read(&shared_data().join(file), &ReadOptions::default()).expect("a cell");
+        let read = read(shared_data().join(file), &ReadOptions::default()).expect("a cell");
         for copy in 0..copies {
             let cell = moved(&read.morphology, share(copy, copies), copy);
             let generated = generate(&cell, &GenerateOptions::default()).expect("meshed");
