@@ -35,6 +35,20 @@ def test_a_mesh_is_closed_and_has_attributes(cell: nt.Morphology, mesh: nt.Mesh)
     assert mesh.radius.min() >= 0 and not len(mesh.quads)
 
 
+def test_the_soma_can_be_that_of_a_file(cell: nt.Morphology, tmp_path: Path) -> None:
+    radius = 2 * cell.somata[0].radius
+    soma = cell.somata[0]
+    radius, at = 2 * soma.radius, soma.center
+    ball = nt.read(f"1 1 {at[0]} {at[1]} {at[2]} {radius} -1\n".encode(), format="swc")
+    nt.mesh(ball, level=2).save(tmp_path / "ball.ply")
+    more = nt.mesh(cell, soma_mesh=tmp_path / "ball.ply").volume - nt.mesh(cell).volume
+    assert more > 0.5 * 7 / 8 * (4 / 3 * np.pi * radius**3)
+    with pytest.raises(nt.MeshError, match="none.ply"):
+        nt.mesh(cell, soma_mesh=tmp_path / "none.ply")
+    with pytest.raises(ValueError, match="soma"):
+        nt.mesh(cell, soma_mesh="ball.ply", soma="sphere")
+
+
 @pytest.mark.parametrize(
     "options",
     [

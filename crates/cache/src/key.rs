@@ -159,11 +159,15 @@ mod tests {
 
     #[test]
     fn any_other_option_is_another_key() {
-        let changes: [fn(&mut GenerateOptions); 15] = [
+        let changes: [fn(&mut GenerateOptions); 16] = [
             |_| {},
             |o| o.soma = SomaMethod::Sphere,
             |o| o.poisson = 0.31,
             |o| o.soma_keep = SomaKeep::Area,
+            |o| {
+                let sphere = neurotess_morphology::SomaShape::sphere(DVec3::X, 2.0);
+                o.soma_shape = Some(sphere.into());
+            },
             |o| o.soma_scale = 1.1,
             |o| o.radius_factor = 2.0,
             |o| {

@@ -1,8 +1,9 @@
 //! Options of the generation.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use neurotess_morphology::NeuriteKind;
+use neurotess_morphology::{NeuriteKind, SomaShape};
 
 use crate::Polygons;
 
@@ -82,6 +83,9 @@ pub struct GenerateOptions {
     pub poisson: f64,
     /// What of a soma stays as it was traced.
     pub soma_keep: SomaKeep,
+    /// The surface of the soma (µm, relative to the morphology's origin), where it is known better than from the tracing: it
+    /// stands for the soma whose center is nearest to its own. For [`SomaMethod::Fem`].
+    pub soma_shape: Option<Arc<SomaShape>>,
     /// Factor on the soma's radius, greater than 0.
     pub soma_scale: f64,
     /// Factor on the radii of neurites, greater than 0, as for figures in which thin ones must be seen, or
@@ -131,6 +135,7 @@ impl Default for GenerateOptions {
             soma: SomaMethod::Fem,
             poisson: 0.3,
             soma_keep: SomaKeep::Volume,
+            soma_shape: None,
             soma_scale: 1.0,
             radius_factor: 1.0,
             polygons: None,

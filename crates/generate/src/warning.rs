@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 36] = [
+pub(crate) const CODES: [&str; 37] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -36,6 +36,7 @@ pub(crate) const CODES: [&str; 36] = [
     "simplified",
     "soma_as_neurite",
     "soma_folded",
+    "soma_hidden",
     "soma_inverted",
     "soma_radius_mended",
     "soma_rounded",

@@ -63,4 +63,4 @@ pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
 pub use membrane::{Membrane, MembranePlace};
 pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};
-pub use soma::{SomaShape, soma_area_volume};
+pub use soma::{Hidden, SomaMeshError, SomaShape, soma_area_volume};

@@ -10,7 +10,7 @@ use neurotess_union::UnionError;
 use crate::merged::Merged;
 use crate::surface::CellSurface;
 use crate::thinning::Thinning;
-use crate::{MeshError, MeshOptions, Stage, Watch, verdict};
+use crate::{MeshError, MeshOptions, Stage, Watch, soma_mesh, verdict};
 
 /// How often a mesh for simulators is made again with thinner tubes.
 const ROUNDS: usize = 6;
@@ -116,7 +116,7 @@ fn generated(
     watch.tell(Stage::Mesh, 0, 0);
     let generated = generate_stoppable(
         morphology,
-        &options.generate_options(),
+        &soma_mesh::generate_options(options, morphology)?,
         || watch.seconds(),
         watch.flag(),
     );

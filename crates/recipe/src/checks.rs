@@ -1,6 +1,6 @@
 //! Whether options fit together, and have values that make sense.
 
-use neurotess_generate::{GenerateOptions, Smooth, SphereKind};
+use neurotess_generate::{GenerateOptions, Smooth, SomaMethod, SphereKind};
 use neurotess_refine::{EdgeRule, LodCriterion};
 
 use crate::options::{LEVELS, LEVELS_ALONG};
@@ -24,6 +24,12 @@ impl MeshOptions {
         }
         if self.is_simulation() && !self.merges() {
             return Err(OptionsError::CrossingSimulation);
+        }
+        if self.soma_mesh.is_some() && self.generate.soma != SomaMethod::Fem {
+            return Err(OptionsError::Conflict {
+                option: MeshOption::SomaMesh,
+                with: MeshOption::Soma,
+            });
         }
         check_levels(self.levels)?;
         check_generate(&self.generate)

@@ -1,5 +1,7 @@
 //! What keeps a cell from being meshed.
 
+use std::path::PathBuf;
+
 use neurotess_generate::GenerateError;
 use neurotess_mesh::{Format, Unsound};
 use neurotess_union::UnionError;
@@ -166,6 +168,14 @@ pub enum MeshError {
     /// There is no coarse mesh.
     #[error(transparent)]
     Generate(#[from] GenerateError),
+    /// The file with the soma's surface cannot be used.
+    #[error("{}: {found}", file.display())]
+    SomaMesh {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, and what to do.
+        found: String,
+    },
     /// The options leave nothing of the cell.
     #[error("nothing is left to mesh")]
     Empty,
@@ -222,7 +232,11 @@ impl MeshError {
                 ": use {} and look at it with neurotess check",
                 O::Crossings.set_to("merge", spelling)
             ),
-            Self::Generate(_) | Self::Merge(_) | Self::Unsound(_) | Self::Stopped => String::new(),
+            Self::Generate(_)
+            | Self::SomaMesh { .. }
+            | Self::Merge(_)
+            | Self::Unsound(_)
+            | Self::Stopped => String::new(),
         };
         format!("{self}{remedy}")
     }

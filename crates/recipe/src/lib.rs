@@ -33,6 +33,7 @@ mod options;
 mod pieces;
 mod refined;
 mod report;
+mod soma_mesh;
 mod surface;
 mod thinning;
 mod tracing;

@@ -19,6 +19,7 @@ pub enum MeshOption {
     Soma,
     Poisson,
     SomaKeep,
+    SomaMesh,
     SomaScale,
     Radii,
     RadiusFactor,
@@ -54,7 +55,7 @@ pub enum Spelling {
 
 impl MeshOption {
     /// The options of a mesh, without those of its files.
-    pub(crate) const OF_MESH: [Self; 25] = [
+    pub(crate) const OF_MESH: [Self; 26] = [
         Self::Level,
         Self::MaxError,
         Self::LevelAlong,
@@ -69,6 +70,7 @@ impl MeshOption {
         Self::Soma,
         Self::Poisson,
         Self::SomaKeep,
+        Self::SomaMesh,
         Self::SomaScale,
         Self::Radii,
         Self::RadiusFactor,
@@ -105,6 +107,7 @@ impl MeshOption {
             Self::Soma => "soma",
             Self::Poisson => "poisson",
             Self::SomaKeep => "soma_keep",
+            Self::SomaMesh => "soma_mesh",
             Self::SomaScale => "soma_scale",
             Self::Radii => "radii",
             Self::RadiusFactor => "radius_factor",
@@ -151,7 +154,8 @@ impl MeshOption {
             Self::Ring => "generate.rings",
             Self::Smooth => "generate.smooth",
             Self::Types => "generate.kinds",
-            Self::Crossings
+            Self::SomaMesh
+            | Self::Crossings
             | Self::Format
             | Self::Unit
             | Self::Walls

@@ -1,5 +1,7 @@
 //! Options of a cell's mesh.
 
+use std::path::PathBuf;
+
 use neurotess_generate::{Equal, GenerateOptions, Polygons, Sides, Smooth, SomaMethod};
 use neurotess_morphology::NeuriteKind;
 use neurotess_refine::{EdgeRule, LodCriterion, LodView, RefineOptions};
@@ -90,6 +92,9 @@ pub struct MeshOptions {
     pub crossings: Crossings,
     /// What it is for.
     pub purpose: Purpose,
+    /// A file with the surface of the soma, in the coordinates of the tracing (µm): [`mesh`](crate::mesh) makes
+    /// [`GenerateOptions::soma_shape`] of it.
+    pub soma_mesh: Option<PathBuf>,
 }
 
 impl Default for MeshOptions {
@@ -101,6 +106,7 @@ impl Default for MeshOptions {
             levels: Levels::Criterion(LodCriterion::Homogeneous(LEVEL)),
             crossings: Crossings::Keep,
             purpose: Purpose::Surface,
+            soma_mesh: None,
         }
     }
 }
@@ -162,6 +168,13 @@ impl MeshOptions {
     #[must_use]
     pub fn with_soma(mut self, soma: SomaMethod) -> Self {
         self.generate.soma = soma;
+        self
+    }
+
+    /// The same with the soma's surface from a file.
+    #[must_use]
+    pub fn with_soma_mesh(mut self, file: impl Into<PathBuf>) -> Self {
+        self.soma_mesh = Some(file.into());
         self
     }
 

@@ -1,6 +1,7 @@
 //! Values of options as files and Python give them, before it is known what they are of.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use neurotess_generate::Smooth;
 use neurotess_morphology::NeuriteKind;
@@ -85,6 +86,13 @@ impl Given<'_> {
             _ => None,
         };
         number.ok_or_else(|| self.refused("a number is needed"))
+    }
+
+    pub(crate) fn path(&self) -> Result<PathBuf, OptionsError> {
+        match self.value {
+            OptionValue::Text(text) => Ok(text.into()),
+            _ => Err(self.refused("the path of a mesh is needed")),
+        }
     }
 
     /// A choice by its word.

@@ -44,6 +44,7 @@ def mesh(
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     poisson: float | None = None,
     soma_keep: Literal["volume", "area", "scale"] | None = None,
+    soma_mesh: str | os.PathLike[str] | None = None,
     soma_scale: float | None = None,
     radii: Literal["traced", "equal-area", "equal-perimeter"] | None = None,
     radius_factor: float | None = None,
@@ -83,6 +84,8 @@ def mesh(
     - `soma`: ``"fem"``, ``"sphere"``, ``"profile"`` or ``"none"``; `soma_keep`: what of it is as traced, ``"volume"``
       (the default), ``"area"`` or ``"scale"``; `poisson` (0.3), `soma_scale` (1),
       `soma_sphere`, `soma_level`
+    - `soma_mesh`: a file with the soma's surface (PLY, OBJ, STL, …; µm, in the tracing's coordinates), as from a stack
+      of images or electron microscopy, instead of what was traced of it
     - `ring`: where neurites leave the soma, as in ``{1: 0.5}``: neurites count from 1, positions are 0 to 2
     - `radii`: ``"traced"``: rings of neurites lie on the traced radius, and hold less the fewer sides they have;
       ``"equal-area"`` (with `simulation` if nothing is said): as much larger as keeps the traced volume;
@@ -116,6 +119,7 @@ def mesh(
         "soma": soma,
         "poisson": poisson,
         "soma_keep": soma_keep,
+        "soma_mesh": soma_mesh,
         "soma_scale": soma_scale,
         "radii": radii,
         "radius_factor": radius_factor,

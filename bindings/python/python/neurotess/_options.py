@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
     """Options of meshes, checked."""
     try:
-        return _neurotess.Recipe(dict(options))
+        files = {name: os.fspath(value) for name, value in options.items() if isinstance(value, os.PathLike)}
+        return _neurotess.Recipe({**options, **files})
     except OptionError as error:
         from ._errors import with_given
 

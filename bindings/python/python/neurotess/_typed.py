@@ -39,6 +39,7 @@ class MeshOptions(TypedDict, total=False):
     soma: Literal["fem", "sphere", "profile", "none"] | None
     poisson: float | None
     soma_keep: Literal["volume", "area", "scale"] | None
+    soma_mesh: str | os.PathLike[str] | None
     soma_scale: float | None
     radii: Literal["traced", "equal-area", "equal-perimeter"] | None
     radius_factor: float | None

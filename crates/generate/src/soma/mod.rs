@@ -9,6 +9,7 @@ mod insertion_quads;
 mod measure;
 mod profile;
 mod pull;
+mod reference;
 mod site;
 mod soma_surface;
 mod somata;
@@ -18,6 +19,7 @@ mod surface;
 mod trials;
 mod warp;
 
+pub(crate) use reference::{as_neurites, soma_spheres};
 pub(crate) use site::collar;
 pub(crate) use soma_surface::SomaSurface;
-pub(crate) use somata::{BuiltSoma, as_neurites, build, soma_spheres};
+pub(crate) use somata::{BuiltSoma, build};

@@ -1,9 +1,8 @@
-//! The somata of a cell: how far each reaches, its surface, and where its rings ended up.
+//! The somata of a cell: each one's surface, and where its rings ended up.
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use neurotess_morphology::{Morphology, Soma, SomaKind, SomaShape};
 
 use crate::soma::first_rings::{self, PlacedRing, RingRequests};
 use crate::soma::insertion_quads::Insertion;
@@ -14,109 +13,7 @@ use crate::stop::Stop;
 use crate::tracing::SomaSphere;
 use crate::tracing::{Root, Skeleton};
 use crate::warning::Warnings;
-use crate::{FirstRing, GenerateOptions, SomaMethod, SomaReport};
-
-/// Which somata were traced as neurites are, and are meshed as such.
-pub(crate) fn as_neurites(
-    morphology: &Morphology,
-    options: &GenerateOptions,
-    warnings: &mut Warnings,
-) -> Vec<bool> {
-    let is_like_neurite = |soma: &Soma| {
-        let like = options.soma == SomaMethod::Fem
-            && soma.kind == SomaKind::Cylinders
-            && soma.radius > 0.0
-            && SomaShape::of(soma).is_like_neurite();
-        if like {
-            warnings.add(
-                "soma_as_neurite",
-                soma.samples.first().map(|sample| sample.id),
-                "soma was traced along branches, or is long and bent: meshed as a thick neurite",
-            );
-        }
-        like
-    };
-    morphology.somata.iter().map(is_like_neurite).collect()
-}
-
-/// The sphere of each soma that is to be meshed, but of those that are neurites.
-pub(crate) fn soma_spheres(
-    morphology: &Morphology,
-    skeleton: &Skeleton,
-    as_neurites: &[bool],
-    options: &GenerateOptions,
-    warnings: &mut Warnings,
-) -> Vec<Option<SomaSphere>> {
-    let starts = starts(skeleton, morphology.somata.len());
-    let reach = match options.soma {
-        SomaMethod::Fem => FEM_REACH,
-        SomaMethod::Sphere => 1.0,
-        SomaMethod::Profile => PROFILE_REACH,
-        SomaMethod::None => return vec![None; morphology.somata.len()],
-    };
-    let soma_sphere = |(index, soma): (usize, &Soma)| {
-        if as_neurites[index] {
-            return None;
-        }
-        let (center, radius) = (soma.center.as_dvec3(), f64::from(soma.radius));
-        let shape = match options.soma {
-            _ if !(radius.is_finite() && radius > 0.0) => {
-                warnings.add(
-                    "soma_radius_mended",
-                    soma.samples.first().map(|s| s.id),
-                    "soma has no radius: taken from where its neurites start",
-                );
-                let radius = radius_from_neurites(skeleton, &starts[index], center);
-                SomaShape::sphere(center, radius)
-            }
-            SomaMethod::Fem => SomaShape::of(soma),
-            SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => {
-                SomaShape::sphere(center, radius)
-            }
-        };
-        Some(SomaSphere::new(shape, options.soma_scale, reach))
-    };
-    morphology
-        .somata
-        .iter()
-        .enumerate()
-        .map(soma_sphere)
-        .collect()
-}
-
-/// Farthest first ring of an elastic soma, in radii: beyond, the pull inverts tetrahedra. Chosen by
-/// eye among 1.2 to 1.6: farther ones look like stars.
-const FEM_REACH: f64 = 1.35;
-/// LiveMesh's: the tube has its own radius from 1.5 R on.
-const PROFILE_REACH: f64 = 1.5;
-
-/// First nodes of each soma's neurites.
-fn starts(skeleton: &Skeleton, somata: usize) -> Vec<Vec<u32>> {
-    let mut starts = vec![Vec::new(); somata];
-    for (index, node) in skeleton.nodes().iter().enumerate() {
-        if let Root::Soma(soma) = node.root {
-            starts[soma as usize].push(index as u32);
-        }
-    }
-    starts
-}
-
-/// A radius for a soma that has none: half-way to the nearest start of a neurite, and no thinner
-/// than the thickest of them.
-fn radius_from_neurites(skeleton: &Skeleton, starts: &[u32], center: DVec3) -> f64 {
-    let (mut nearest, mut thickest) = (f64::INFINITY, 0.0_f64);
-    for &start in starts {
-        let start = skeleton.node(start);
-        nearest = nearest.min(start.center.distance(center));
-        thickest = thickest.max(start.radius);
-    }
-    let half = if nearest.is_finite() {
-        0.5 * nearest
-    } else {
-        0.0
-    };
-    half.min(10.0).max(1.5 * thickest).max(0.5)
-}
+use crate::{FirstRing, GenerateOptions, SomaReport};
 
 /// A rebuilt soma.
 pub(crate) struct BuiltSoma {

@@ -24,7 +24,7 @@ pub(crate) struct SomaSphere {
 
 impl SomaSphere {
     /// `scale`: factor on the shape.
-    pub(crate) fn new(shape: SomaShape, scale: f64, reach: f64) -> Self {
+    pub(crate) fn new(shape: Arc<SomaShape>, scale: f64, reach: f64) -> Self {
         Self {
             center: shape.center(),
             radius: shape.radius() * scale,
@@ -32,14 +32,15 @@ impl SomaSphere {
             farthest: scale * shape.farthest(),
             hillocks: 1.0,
             rings: Vec::new(),
-            shape: Arc::new(shape),
+            shape,
             scale,
         }
     }
 
     /// The sphere of the same volume.
     pub(crate) fn rounded(&self, reach: f64) -> Self {
-        Self::new(SomaShape::sphere(self.center, self.radius), 1.0, reach)
+        let sphere = SomaShape::sphere(self.center, self.radius);
+        Self::new(Arc::new(sphere), 1.0, reach)
     }
 
     /// Distance of the surface from the center along a unit direction.

@@ -9,10 +9,10 @@ use super::directions::Directions;
 use crate::SomaSample;
 
 /// The round cones of linked samples.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cones(Vec<Cone>);
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Cone {
     from: DVec3,
     to: DVec3,

@@ -4,6 +4,22 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::{DMat3, DVec3};
 
+/// Which face of the cube of [`Directions`] a direction goes through, and where: coordinates from −1 to 1 in the order of the
+/// grid's rows and columns.
+pub(super) fn place_on_cube(direction: DVec3) -> (usize, [f64; 2]) {
+    let length = direction.abs();
+    let axis = match length.max_element() {
+        most if most == length.x => 0,
+        most if most == length.y => 1,
+        _ => 2,
+    };
+    let along = direction[axis];
+    let face = 2 * axis + usize::from(along > 0.0);
+    let row = direction[(axis + 1) % 3] / along;
+    let column = direction[(axis + 2) % 3] / along.abs();
+    (face, [row, column])
+}
+
 /// Directions through the corners of a grid on the faces of a cube, in equal angles.
 pub(super) struct Directions {
     /// Unit directions.

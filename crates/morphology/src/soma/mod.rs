@@ -19,8 +19,9 @@ mod outline;
 mod shape;
 mod smooth;
 mod stack;
+mod triangles;
 
-pub use shape::SomaShape;
+pub use shape::{Hidden, SomaMeshError, SomaShape};
 
 use std::f64::consts::PI;
 

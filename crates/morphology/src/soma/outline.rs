@@ -38,7 +38,7 @@ const LEAST: f64 = 0.05;
 const CLEARANCE: f64 = 0.2;
 
 /// An outline as seen from the center within it: long axis first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Outline {
     axes: [DVec3; 3],
     body: Smooth,
@@ -47,7 +47,7 @@ pub(super) struct Outline {
 }
 
 /// A function of the angle in the plane, smooth and known at equal angles once the outline is stretched to a round one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct InPlane {
     stretch: f64,
     values: [f64; ANGLES],
@@ -57,7 +57,7 @@ struct InPlane {
 struct Slabs(Vec<Slab>);
 
 /// A stretch of the long axis with linear middle and half-width.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Slab {
     from: f64,
     to: f64,

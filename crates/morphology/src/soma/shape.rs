@@ -8,6 +8,7 @@
 //! | one outline | circular cross-sections along its long axis, as NEURON reads it: [`outline`](super::outline) |
 //! | outlines in a stack | the loft through all of them, with round caps: [`stack`](super::stack) |
 //! | cylinders | the union of round cones: [`cones`](super::cones) |
+//! | a mesh beside the tracing | its own distances: [`triangles`](super::triangles) |
 //!
 //! Where a body is not star-shaped about any of its points, r is the outermost crossing; of cylinders this is told
 //! ([`SomaShape::is_like_neurite`]), because they are better a thick neurite.
@@ -22,11 +23,12 @@ use super::cones::Cones;
 use super::directions::Directions;
 use super::outline::Outline;
 use super::stack::Stack;
+use super::triangles::Triangles;
 use crate::{Soma, SomaKind};
 
 /// A soma's surface as it was traced: its distance from a center in each direction. µm, relative to the
 /// morphology's origin.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SomaShape {
     center: DVec3,
     body: Body,
@@ -34,14 +36,56 @@ pub struct SomaShape {
     area: f64,
     farthest: f64,
     stretch: DMat3,
+    hidden: Option<Hidden>,
 }
 
-#[derive(Clone, Debug)]
+/// What the center of a mesh does not see: the surface turns away there, and the shape holds what is outside of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hidden {
+    /// Share of the shape's volume that is outside of the mesh.
+    pub share: f64,
+    /// Where it is deepest (µm).
+    pub place: DVec3,
+}
+
+/// Why a surface of triangles is not taken as a soma's. Places are in the coordinates of the surface (µm).
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SomaMeshError {
+    /// There are fewer than four triangles with an area.
+    #[error("it has no surface: at least four triangles are needed")]
+    Empty,
+    /// A triangle names a vertex that is not there or not finite.
+    #[error("vertex {index} (counted from 0) is missing or not finite")]
+    BadVertex {
+        /// The vertex.
+        index: u32,
+    },
+    /// Too much of it is open.
+    #[error(
+        "it goes around nothing: {:.0} % of the directions from its middle meet no triangle: close it",
+        100.0 * share
+    )]
+    Open {
+        /// Share of all directions.
+        share: f64,
+    },
+    /// No point within sees enough of it.
+    #[error(
+        "it is not star-shaped: seen from its middle it holds {:.0} % of outside, most of it near \
+         ({:.2}, {:.2}, {:.2}) µm: cut off what belongs to neurites there",
+        100.0 * .0.share, .0.place.x, .0.place.y, .0.place.z
+    )]
+    NotStarShaped(Hidden),
+}
+
+#[derive(Clone, Debug, PartialEq)]
 enum Body {
     Sphere(f64),
     Outline(Box<Outline>),
     Stack(Stack),
     Cones(Cones),
+    Triangles(Triangles),
 }
 
 /// Directions by whose distances volume and area are summed, along an edge of a cube: 864 hold the volume of an ellipsoid
@@ -80,7 +124,20 @@ impl SomaShape {
             area: 4.0 * PI * radius * radius,
             farthest: radius,
             stretch: DMat3::IDENTITY,
+            hidden: None,
         }
+    }
+
+    /// The shape of a surface that goes around the soma, closed or with holes where neurites were cut off.
+    /// `vertices` are µm, relative to the morphology's origin; triangles face outwards, or all inwards.
+    ///
+    /// # Errors
+    /// The surface goes around nothing, or is not star-shaped by far; see [`hidden`](Self::hidden).
+    pub fn from_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, SomaMeshError> {
+        let cast = Triangles::cast(vertices, triangles)?;
+        let mut shape = Self::new(cast.center, Body::Triangles(cast.body));
+        shape.hidden = cast.hidden;
+        Ok(shape)
     }
 
     fn new(center: DVec3, body: Body) -> Self {
@@ -91,6 +148,7 @@ impl SomaShape {
             area: 0.0,
             farthest: 0.0,
             stretch: DMat3::IDENTITY,
+            hidden: None,
         };
         let directions = Directions::new(SUMMED);
         let distances: Vec<f64> = (directions.units.iter())
@@ -150,8 +208,13 @@ impl SomaShape {
     pub fn grows_by(&self) -> f64 {
         match self.body {
             Body::Outline(_) => 1.0,
-            Body::Sphere(_) | Body::Stack(_) | Body::Cones(_) => 3.0,
+            Body::Sphere(_) | Body::Stack(_) | Body::Cones(_) | Body::Triangles(_) => 3.0,
         }
+    }
+
+    /// What of a mesh the center does not see, where it has another distance than its outermost one.
+    pub fn hidden(&self) -> Option<Hidden> {
+        self.hidden
     }
 
     /// Whether it is a sphere.
@@ -166,6 +229,7 @@ impl SomaShape {
             Body::Outline(outline) => outline.distance(direction),
             Body::Stack(stack) => stack.distance(direction),
             Body::Cones(cones) => cones.distance(self.center, direction),
+            Body::Triangles(triangles) => triangles.distance(direction),
         }
     }
 

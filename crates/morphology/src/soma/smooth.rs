@@ -19,7 +19,7 @@ const FITTED: u32 = 400;
 const LEAST: f64 = 0.05;
 
 /// A distance by direction: the exponential of a polynomial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Smooth([f64; TERMS]);
 
 /// Directions with their monomials, and the products of those.

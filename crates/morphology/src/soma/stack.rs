@@ -22,7 +22,7 @@ const STEPS: u32 = 48;
 const HALVINGS: u32 = 24;
 
 /// Outlines, the lowest first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stack {
     axes: [DVec3; 3],
     layers: Vec<Layer>,
@@ -32,7 +32,7 @@ pub(super) struct Stack {
     beyond: f64,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Layer {
     height: f64,
     middle: DVec2,

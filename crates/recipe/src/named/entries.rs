@@ -1,6 +1,7 @@
 //! Names and values of options in files.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use neurotess_generate::Smooth;
 use serde::de::Error;
@@ -31,6 +32,7 @@ impl NamedOptions {
             Smooth::Length(length) => OptionValue::Number(length),
             _ => OptionValue::Number(0.0),
         });
+        let path = |value: &PathBuf| OptionValue::Text(value.to_string_lossy().into_owned());
         let all = [
             (O::Level, whole(self.level)),
             (O::MaxError, number(self.max_error)),
@@ -46,6 +48,7 @@ impl NamedOptions {
             (O::Soma, self.soma.map(word)),
             (O::Poisson, number(self.poisson)),
             (O::SomaKeep, self.soma_keep.map(word)),
+            (O::SomaMesh, self.soma_mesh.as_ref().map(path)),
             (O::SomaScale, number(self.soma_scale)),
             (O::Radii, self.radii.map(word)),
             (O::RadiusFactor, number(self.radius_factor)),

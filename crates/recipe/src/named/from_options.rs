@@ -10,7 +10,7 @@ impl NamedOptions {
     /// The names of options, without those that have their defaults.
     ///
     /// # Errors
-    /// A value that has no name: levels that depend on a view, radii for other sides than the levels give.
+    /// A value that has no name: a soma's shape that is of no file, levels that depend on a view, radii for other sides than the levels give.
     pub fn of(options: &MeshOptions) -> Result<Self, OptionsError> {
         let MeshOptions {
             generate,
@@ -18,7 +18,11 @@ impl NamedOptions {
             levels,
             crossings,
             purpose,
+            soma_mesh,
         } = options;
+        if generate.soma_shape.is_some() {
+            return Err(OptionsError::Unnamed(MeshOption::SomaMesh));
+        }
         let simulation = *purpose == Purpose::Simulation;
         let default = match simulation {
             true => MeshOptions::simulation(),
@@ -48,6 +52,7 @@ impl NamedOptions {
             soma: (generate.soma != usual.soma).then_some(generate.soma),
             poisson: other(generate.poisson, usual.poisson),
             soma_keep: (generate.soma_keep != usual.soma_keep).then_some(generate.soma_keep),
+            soma_mesh: soma_mesh.clone(),
             soma_scale: other(generate.soma_scale, usual.soma_scale),
             radii: (radii != usual_radii).then_some(radii),
             radius_factor: other(generate.radius_factor, usual.radius_factor),

@@ -5,6 +5,7 @@ mod from_options;
 mod to_options;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use neurotess_generate::{Smooth, SomaKeep, SomaMethod, SphereKind};
 use neurotess_morphology::NeuriteKind;
@@ -59,6 +60,8 @@ pub struct NamedOptions {
     pub poisson: Option<f64>,
     /// What of the soma stays as it was traced.
     pub soma_keep: Option<SomaKeep>,
+    /// A file with the soma's surface.
+    pub soma_mesh: Option<PathBuf>,
     /// Factor on the soma's radius.
     pub soma_scale: Option<f64>,
     /// Which radius rings of neurites have.
@@ -109,6 +112,7 @@ impl NamedOptions {
             MeshOption::Soma => self.soma = Some(given.word()?),
             MeshOption::Poisson => self.poisson = Some(given.number()?),
             MeshOption::SomaKeep => self.soma_keep = Some(given.word()?),
+            MeshOption::SomaMesh => self.soma_mesh = Some(given.path()?),
             MeshOption::SomaScale => self.soma_scale = Some(given.number()?),
             MeshOption::Radii => self.radii = Some(given.word()?),
             MeshOption::RadiusFactor => self.radius_factor = Some(given.number()?),

@@ -32,6 +32,7 @@ impl NamedOptions {
                 true => Crossings::Separate,
                 false => Crossings::Keep,
             }),
+            soma_mesh: self.soma_mesh.clone(),
             purpose: match self.simulation {
                 true => Purpose::Simulation,
                 false => Purpose::Surface,

@@ -2,6 +2,7 @@
 
 mod files;
 mod purposes;
+mod soma_meshes;
 
 neurotess_testing::main!();
 

@@ -138,6 +138,10 @@ pub(crate) struct MeshArgs {
     /// What of the soma stays as it was traced, while neurites draw it out [default: volume]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Soma")]
     pub(crate) soma_keep: Option<SomaKeepArg>,
+    /// The soma's surface from a mesh (ply, obj, stl, off, …; µm, in the tracing's coordinates), as from a stack of
+    /// images or electron microscopy, instead of what was traced of it
+    #[arg(long, value_name = "FILE", help_heading = "Soma")]
+    pub(crate) soma_mesh: Option<PathBuf>,
     /// Factor on the soma's size
     #[arg(
         long,

@@ -45,7 +45,8 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if let [path] = &circuits[..]
         && others.is_empty()
     {
-        if let Some((flag, _)) = args.tables().next() {
+        let of_a_cell = args.tables().next().map(|(flag, _)| flag);
+        if let Some(flag) = of_a_cell.or(args.soma_mesh.is_some().then_some("--soma-mesh")) {
             return usage(format!(
                 "{flag} is of one cell, not of a circuit: leave it out"
             ));
@@ -62,6 +63,9 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(out, reporter)?;
     let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
     let measure = reporter.json() || args.log.is_some();
+    if args.soma_mesh.is_some() && !inputs.one_file {
+        return usage("--soma-mesh is of one cell: give one input file");
+    }
     let mut files = vec![("-o", out)];
     for (flag, table) in args.tables() {
         if !inputs.one_file {

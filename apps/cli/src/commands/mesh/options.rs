@@ -63,11 +63,14 @@ impl MeshOptions {
         let generate = format!("{generate:?}");
         let generate = generate
             .replace(", soma_keep: Volume", "")
+            .replace(", soma_shape: None", "")
             .replace(", polygons: None", "")
             .replace(", unknown_radius: None", "")
             .replace(", least_radius: 0.0", "")
             .replace(", crossings: Keep", "")
             .replace(", smooth: None", "");
+        let soma_mesh = recipe.soma_mesh.as_ref();
+        let soma_mesh = soma_mesh.map_or(String::new(), |file| format!(" {}", file.display()));
         let unit = match unit {
             Unit::Micrometer => "",
             Unit::Meter => " Meter",
@@ -86,7 +89,7 @@ impl MeshOptions {
         };
         let parts = if *parts { " parts" } else { "" };
         format!(
-            "{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}{materials}{parts}"
+            "{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}{materials}{parts}{soma_mesh}"
         )
     }
 
@@ -181,6 +184,7 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
         SomaKeepArg::Area => SomaKeep::Area,
         SomaKeepArg::Scale => SomaKeep::Scale,
     });
+    named.soma_mesh = args.soma_mesh.clone();
     named.soma_scale = Some(args.soma_scale);
     named.radii = args.radii.map(|radii| match radii {
         RadiiArg::Traced => Radii::Traced,

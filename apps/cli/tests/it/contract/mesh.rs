@@ -174,6 +174,42 @@ fn options_change_the_shape() {
 }
 
 #[neurotess_testing::test]
+fn the_soma_can_be_that_of_a_mesh() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.file("ball.swc", "1 1 0 0 0 8 -1\n");
+    work.run("mesh ball.swc -o ball.ply").exits(0);
+    let run = work.run("mesh cell.swc -o cell.ply --soma-mesh ball.ply --json");
+    let told = run.exits(0).json();
+    let traced = told[0]["soma_volume_traced"].as_f64().expect("a number");
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
+    assert!((traced / ball - 1.0).abs() < 0.01, "{traced} of {ball}");
+    for (arguments, expected) in [
+        ("cell.swc -o o.ply --soma-mesh none.ply", "none.ply: "),
+        (
+            "cell.swc -o o.ply --soma-mesh cell.swc",
+            "unknown mesh format",
+        ),
+    ] {
+        let run = work.run(&format!("mesh {arguments}")).exits(1);
+        assert!(run.errors()[0].contains(expected), "{}", run.stderr());
+    }
+    for (arguments, expected) in [
+        (
+            "cell.swc ball.swc -o out --soma-mesh ball.ply",
+            "is of one cell",
+        ),
+        (
+            "cell.swc -o o.ply --soma-mesh ball.ply --soma none",
+            "cannot be used with '--soma'",
+        ),
+    ] {
+        let run = work.run(&format!("mesh {arguments}")).exits(2);
+        assert!(run.errors()[0].contains(expected), "{}", run.stderr());
+    }
+}
+
+#[neurotess_testing::test]
 fn free_neurites_are_components() {
     let (_, mesh) = meshed("-o cell.ply --soma none");
     assert_eq!(mesh["components"], 2);

@@ -167,7 +167,11 @@ fn a_branch_that_comes_back_to_its_parent_is_moved_away() {
 }
 
 fn sphere(center: DVec3, radius: f64) -> Option<SomaSphere> {
-    Some(SomaSphere::new(SomaShape::sphere(center, radius), 1.0, 1.0))
+    Some(SomaSphere::new(
+        SomaShape::sphere(center, radius).into(),
+        1.0,
+        1.0,
+    ))
 }
 
 #[test]
