@@ -34,7 +34,7 @@ pub enum SaveRequest {
     /// The session.
     Session(PathBuf),
     /// Meshes of neurons.
-    Meshes(MeshOptions),
+    Meshes(Box<MeshOptions>),
     /// A picture of the current view.
     Picture(PictureFile),
     /// Pictures along views or through time.

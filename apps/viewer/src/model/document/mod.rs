@@ -28,7 +28,7 @@ pub use meshes::{MeshEntry, is_mesh};
 pub use neurons::{NeuronRevisions, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use saved_view::SavedView;
-pub use soma::{Method, SomaEdit};
+pub use soma::{Keep, Method, SomaEdit};
 pub use spines::{SpineEdit, SpinePlaces};
 pub use traces::{Trace, TracePlace};
 

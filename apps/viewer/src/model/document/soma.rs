@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use neurotess::generate::{GenerateOptions, SomaMethod, SphereKind};
+use neurotess::generate::{GenerateOptions, SomaKeep, SomaMethod, SphereKind};
 use serde::{Deserialize, Serialize};
 
 use super::SpineEdit;
@@ -15,6 +15,9 @@ pub struct SomaEdit {
     pub method: Method,
     /// Poisson's ratio, 0 to 0.49.
     pub poisson: f64,
+    /// What stays as it was traced.
+    #[serde(skip_serializing_if = "Keep::is_usual")]
+    pub keep: Keep,
     /// Factor on the radius.
     pub scale: f64,
     /// Whether the reference sphere is the paper's octahedron instead of a cube.
@@ -45,11 +48,32 @@ pub enum Method {
     None,
 }
 
+/// What of an elastic soma stays as it was traced: see [`SomaKeep`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Keep {
+    /// Its volume.
+    #[default]
+    Volume,
+    /// Its area.
+    Area,
+    /// The size of what neurites draw out.
+    Scale,
+}
+
+impl Keep {
+    /// Whether it is the one of a soma that nobody edited.
+    fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 impl Default for SomaEdit {
     fn default() -> Self {
         Self {
             method: Method::Elastic,
             poisson: 0.3,
+            keep: Keep::Volume,
             scale: 1.0,
             octahedron: false,
             level: 0,
@@ -70,6 +94,11 @@ impl SomaEdit {
                 Method::None => SomaMethod::None,
             },
             poisson: self.poisson.clamp(0.0, 0.49),
+            soma_keep: match self.keep {
+                Keep::Volume => SomaKeep::Volume,
+                Keep::Area => SomaKeep::Area,
+                Keep::Scale => SomaKeep::Scale,
+            },
             soma_scale: self.scale.clamp(0.05, 20.0),
             sphere: match self.octahedron {
                 true => SphereKind::Octahedron,

@@ -8,6 +8,8 @@ use crate::model::command::Tab;
 pub struct Layout {
     /// The panel on the right.
     pub tab: Tab,
+    /// Whether what was traced of somata lies over the picture, while the panel *Soma* shows.
+    pub traced_somata: bool,
     /// Text to search the list by.
     pub search: String,
     /// The dialog that is open.
@@ -25,6 +27,7 @@ impl Default for Layout {
     fn default() -> Self {
         Self {
             tab: Tab::default(),
+            traced_somata: true,
             search: String::new(),
             dialog: Dialog::Nothing,
             panels: true,

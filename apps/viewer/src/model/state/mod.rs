@@ -308,7 +308,7 @@ impl State {
             Command::OpenPalette(path) => self.effects.push(Effect::OpenPalette(path)),
             Command::SavePalette(path) => self.effects.push(Effect::SavePalette(path)),
             Command::SaveSession(path) => self.save(SaveRequest::Session(path)),
-            Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(options)),
+            Command::SaveMeshes(options) => self.save(SaveRequest::Meshes(Box::new(options))),
             Command::SavePage(path) => self.save(SaveRequest::Page(path)),
             Command::SavePicture(options) => self.save(SaveRequest::Picture(options)),
             Command::SaveFilm(options) => self.save(SaveRequest::Film(options)),

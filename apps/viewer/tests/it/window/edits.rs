@@ -9,11 +9,13 @@ use neurotess::synth::Kind;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, Tab};
 use neurotess_viewer::document::{
-    Cut, Detail, LodKind, Look, Method, SomaEdit, SourceId, SpineEdit,
+    Cut, Detail, Keep, LodKind, Look, Method, SomaEdit, SourceId, SpineEdit,
 };
 use neurotess_viewer::state::CellPart;
 
-use crate::common::{Window, gpu, hit_at, run, settle, snapshot, state, viewer, with_samples};
+use crate::common::{
+    Window, differing, gpu, hit_at, run, settle, snapshot, state, viewer, with_samples,
+};
 
 /// Middle of the rail of the n-th slider of the panel.
 fn slider(window: &mut Window, n: usize) -> egui::Rect {
@@ -187,6 +189,40 @@ fn the_surface_follows_the_soma_editor() {
         Edit::SetSoma(vec![SourceId(0)], SomaEdit::default()),
     );
     assert_eq!(volume(&mut window), usual);
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
+fn what_was_traced_of_a_soma_lies_over_it_and_stays_as_asked() {
+    let mut window = crate::common::window();
+    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/somata");
+    let file = std::path::Path::new(docs).join("outline.asc");
+    run(&mut window, Command::Open(vec![file]));
+    run(&mut window, Command::Show(Tab::Soma));
+    let close = state(&mut window).view.focused((glam::DVec3::ZERO, 22.0));
+    run(&mut window, Command::Go(close));
+    snapshot(&mut window, "traced_soma");
+    let with = window.render().expect("a picture");
+    window.get_by_label("Tracing over the surface").click();
+    window.step();
+    settle(&mut window);
+    let without = window.render().expect("a picture");
+    // A tenth of a per cent of the window, at least: a line along the outline.
+    let line = differing(with.as_raw(), without.as_raw());
+    assert!(line > 1000, "{line}");
+    let soma = |window: &mut Window| {
+        let source = state(window).source_of(0).expect("a source").clone();
+        source.generated.somata[0]
+    };
+    let off = |value: f64, traced: f64| (value / traced - 1.0).abs();
+    let kept = soma(&mut window);
+    assert!(off(kept.volume, kept.traced_volume) < 5e-3, "{kept:?}");
+    let edit = SomaEdit {
+        keep: Keep::Area,
+        ..SomaEdit::default()
+    };
+    run(&mut window, Edit::SetSoma(vec![SourceId(0)], edit));
+    let kept = soma(&mut window);
+    assert!(off(kept.area, kept.traced_area) < 0.03, "{kept:?}");
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]

@@ -8,4 +8,5 @@ mod gizmo;
 mod measuring;
 mod overlay;
 pub(crate) mod panes;
+mod traced_somata;
 mod viewport;

@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use super::{area, cell_tip, chips, gizmo, measuring, overlay};
+use super::{area, cell_tip, chips, gizmo, measuring, overlay, traced_somata};
 use crate::model::command::{Command, Edit, Tab};
 use crate::model::document::TracePlace;
 use crate::model::markers::MarkerRef;
@@ -403,6 +403,7 @@ fn over(screen: &Screen<'_>, pane: Pane, rect: Rect, ui: &mut Ui) {
         overlay::axes(screen.state, rect, ui);
     }
     let painter = ui.painter().with_clip_rect(rect);
+    traced_somata::show(screen.state, rect, &painter);
     marks::rings(screen.state, rect, &painter);
     partners::show(screen.state, rect, &painter);
     crossings::marks(screen.state, rect, &painter);

@@ -6,7 +6,7 @@ mod spines;
 use eframe::egui::{Button, Ui};
 
 use crate::model::command::Edit;
-use crate::model::document::{Method, SomaEdit, SourceId};
+use crate::model::document::{Keep, Method, SomaEdit, SourceId};
 use crate::model::numbers::change;
 use crate::model::state::State;
 use crate::ui::panels::widgets::number::slider;
@@ -53,6 +53,14 @@ pub(crate) fn show(state: &mut State, ui: &mut Ui) {
     }
     if edit.method != Method::None {
         heading(ui, "Size");
+        if edit.method == Method::Elastic {
+            ui.horizontal_wrapped(|ui| {
+                ui.label("As traced");
+                for (keep, name, says) in KEEPS {
+                    ui.selectable_value(&mut edit.keep, keep, name).tip(says);
+                }
+            });
+        }
         let says = "The soma's traced radius is multiplied by this.";
         dropped |= number(
             ui,
@@ -65,6 +73,8 @@ pub(crate) fn show(state: &mut State, ui: &mut Ui) {
         );
         reference(&mut edit, ui);
     }
+    ui.checkbox(&mut state.layout.traced_somata, "Tracing over the surface")
+        .tip("The traced outline in red, or circles around the soma's samples");
     ui.add_space(6.0);
     let usual = SomaEdit {
         rings: edit.rings.clone(),
@@ -126,6 +136,24 @@ const METHODS: [(Method, &str, &str); 4] = [
         Method::None,
         "None",
         "No soma: every neurite is a closed mesh of its own",
+    ),
+];
+
+const KEEPS: [(Keep, &str, &str); 3] = [
+    (
+        Keep::Volume,
+        "Volume",
+        "Drawn out by its neurites, the soma has the volume that was traced",
+    ),
+    (
+        Keep::Area,
+        "Area",
+        "Drawn out by its neurites, the soma has the area that was traced, as for electrical properties",
+    ),
+    (
+        Keep::Scale,
+        "Shape",
+        "Neurites draw out what was traced, and volume and area become what they may",
     ),
 ];
 
@@ -204,15 +232,15 @@ fn measures(state: &State, id: SourceId, edit: &SomaEdit, ui: &mut Ui) {
         return;
     };
     heading(ui, &format!("Soma of {}", source.name));
-    let beside = |value: f64, sphere: f64| change(100.0 * (value / sphere - 1.0));
+    let beside = |value: f64, traced: f64| change(100.0 * (value / traced - 1.0));
     figures(
         ui,
         "soma figures",
         &[
             ("volume", measured(soma.volume, "µm³")),
-            ("volume / sphere's", beside(soma.volume, soma.traced_volume)),
+            ("volume / traced", beside(soma.volume, soma.traced_volume)),
             ("area", measured(soma.area, "µm²")),
-            ("area / sphere's", beside(soma.area, soma.traced_area)),
+            ("area / traced", beside(soma.area, soma.traced_area)),
             (
                 "computed in",
                 format!("{:.1} ms", 1e3 * source.generated.soma_seconds),

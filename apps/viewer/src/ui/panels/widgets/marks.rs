@@ -15,15 +15,17 @@ use crate::scene::stage::OUTLINES;
 const ROUND: usize = 48;
 
 /// Projects positions (µm) to points of the window.
-struct Projection<'a> {
-    camera: Camera,
-    rect: Rect,
-    placement: &'a Placement,
-    origin: DVec3,
+pub(crate) struct Projection<'a> {
+    pub(crate) camera: Camera,
+    pub(crate) rect: Rect,
+    pub(crate) placement: &'a Placement,
+    /// Of the positions.
+    pub(crate) origin: DVec3,
 }
 
 impl Projection<'_> {
-    fn at(&self, point: DVec3) -> Option<Pos2> {
+    /// Where a position is in the window, if it is before the eye.
+    pub(crate) fn at(&self, point: DVec3) -> Option<Pos2> {
         let place = self.placement.world_from_cell(self.origin + point);
         at(&self.camera, self.rect, place)
     }
