@@ -88,6 +88,25 @@ def test_what_edits_do(cell: nt.Morphology) -> None:
     assert len(cell) == 5, "the cell itself stays"
 
 
+def test_affine_maps_move_cells(cell: nt.Morphology) -> None:
+    quarter = np.array([[0, -2, 0, 5], [2, 0, 0, 6], [0, 0, 2, 7], [0, 0, 0, 1.0]])
+    moved = nt.edit(cell, matrix=quarter)
+    homogeneous = np.c_[cell.points, np.ones(len(cell))]
+    assert np.allclose(moved.points, (homogeneous @ quarter.T)[:, :3])
+    assert np.allclose(moved.radii, 2 * cell.radii) and moved.edits[0]["edit"] == "place"
+    assert nt.edit(cell, matrix=quarter[:3]) == moved
+    assert nt.edit(cell, matrix=quarter[:3, :3], translate=(5, 6, 7)) == moved
+    assert np.allclose(nt.edit(cell, translate=(1, 0, 0)).points - cell.points, (1, 0, 0))
+    for wrong, message in [
+        ({"matrix": np.eye(2)}, r"\(2, 2\): \(4, 4\), \(3, 4\) or \(3, 3\) is needed"),
+        ({"matrix": quarter * 2}, r"is not affine: its last row is \[0.0, 0.0, 0.0, 2.0\]"),
+        ({"matrix": np.zeros((3, 4))}, r"determinant that is not 0"),
+        ({"translate": (1, 2)}, r"\(x, y, z\) in µm is needed"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            nt.edit(cell, **wrong)
+
+
 def test_radii_that_are_no_numbers_are_mended(tmp_path: Path) -> None:
     bad = tmp_path / "bad.swc"
     bad.write_bytes(CELL.replace(b"20 0 1 2", b"20 0 nan 2"))
@@ -141,7 +160,8 @@ def test_no_edit_of_the_command_is_missing() -> None:
     common = {"json", "quiet", "verbose", "no_progress", "color"}
     # In Python a circuit's cells are selected by `Circuit.select`.
     cells = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
-    assert flags - files - common - cells == set(inspect.signature(nt.edit).parameters) - {"cell"}
+    # `translate` is a `matrix` without turn and size.
+    assert flags - files - common - cells == set(inspect.signature(nt.edit).parameters) - {"cell", "translate"}
 
 
 def test_spines_grow_where_they_are_asked_for(tmp_path: Path) -> None:

@@ -46,6 +46,8 @@ def edit(
     recenter: bool = False,
     rotate: Mapping[Axis, float] | Iterable[tuple[Axis, float]] | None = None,
     mirror: Axis | Iterable[Axis] | None = None,
+    matrix: ArrayLike | None = None,
+    translate: Sequence[float] | None = None,
 ) -> Morphology:
     """A mended copy of a cell: of a `Morphology`, or of what `mesh` takes. The cell itself stays as it is.
 
@@ -80,6 +82,9 @@ def edit(
     - `rotate`: turns around axes through the origin, counterclockwise, by degrees: ``{"z": 90}``, or pairs where an
       axis comes twice
     - `mirror`: changes the sign of the coordinates of an axis, or of several
+    - `matrix`: moves by an affine map, as of a registration: (4, 4), (3, 4) or (3, 3), for columns (x, y, z, 1); radii are
+      scaled by the cube root of its determinant
+    - `translate`: moves by (x, y, z) in µm
 
     `Morphology.edits` of the result tells what each of them changed.
 
@@ -123,6 +128,7 @@ def edit(
     words += _options.arguments({"recenter": recenter})
     words += _words("rotate", [_join([pair], "") for pair in pairs])
     words += _words("mirror", _several(mirror))
+    words += _words("matrix", [] if matrix is None and translate is None else [_rows(matrix, translate)])
     try:
         edits = _neurotess.Edits(words)
     except OptionError as error:
@@ -151,6 +157,25 @@ def _join(pairs: Iterable[tuple[object, object]], by: str) -> str:
 
 def _voxel(sides: Sequence[float]) -> str:
     return "voxel=" + ",".join(map(_options.word, sides))
+
+
+def _rows(matrix: ArrayLike | None, translate: Sequence[float] | None) -> str:
+    """The upper three rows of an affine map, which ends with a shift."""
+    import numpy as np
+
+    given = np.eye(4) if matrix is None else np.asarray(matrix, dtype=float)
+    if given.shape not in ((4, 4), (3, 4), (3, 3)):
+        raise ValueError(f"matrix= is of shape {given.shape}: (4, 4), (3, 4) or (3, 3) is needed")
+    if given.shape == (4, 4) and not (given[3] == (0, 0, 0, 1)).all():
+        raise ValueError(f"matrix= is not affine: its last row is {given[3].tolist()} instead of [0, 0, 0, 1]")
+    rows = np.zeros((3, 4))
+    rows[:, : given.shape[1]] = given[:3]
+    if translate is not None:
+        shift = np.asarray(translate, dtype=float)
+        if shift.shape != (3,):
+            raise ValueError(f"translate={translate!r}: (x, y, z) in µm is needed")
+        rows[:, 3] += shift
+    return ",".join(map(_options.word, rows.ravel().tolist()))
 
 
 def _places(places: ArrayLike) -> list[list[float]]:

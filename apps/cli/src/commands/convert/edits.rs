@@ -1,7 +1,7 @@
 //! The options that edit a tracing, and the order in which their edits are applied.
 
 use clap::{ArgAction, Args};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use neurotess::morphology::NeuriteKind;
 use neurotess::morphology::edit::Edit;
 use neurotess::morphology::smoothing::SmoothingLength;
@@ -82,6 +82,10 @@ pub(crate) struct EditArgs {
     /// Change the sign of the coordinates of this axis, x, y or z; may be repeated
     #[arg(long, value_name = "AXIS", value_parser = axis, action = ArgAction::Append)]
     mirror: Vec<usize>,
+    /// Move by an affine map, as of a registration: three rows of four numbers, one after the other with commas, the last
+    /// of each a shift (µm); radii are scaled by the cube root of the determinant
+    #[arg(long = "matrix", id = "place", value_name = "ROWS", value_parser = matrix, allow_hyphen_values = true)]
+    place: Option<DAffine3>,
 }
 
 /// Types that become another one.
@@ -138,6 +142,7 @@ impl EditArgs {
         }));
         let mirror = self.mirror.iter();
         edits.extend(mirror.map(|&axis| Edit::Mirror { axis }));
+        edits.extend(self.place.map(Edit::Place));
         edits
     }
 
@@ -228,6 +233,25 @@ fn rotation(text: &str) -> Result<(usize, f64), String> {
         .ok_or_else(|| "an axis and degrees are needed, as in z=90".into())
 }
 
+/// An affine map by its rows; a fourth one is that of homogeneous coordinates.
+fn matrix(text: &str) -> Result<DAffine3, String> {
+    let needed = "three rows of four numbers are needed, as in 1,0,0,5,0,1,0,0,0,0,1,0, with a determinant that is not 0";
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    let numbers = numbers.ok_or(needed)?;
+    let rows: &[f64; 12] = match &numbers[..] {
+        [rows @ .., 0.0, 0.0, 0.0, 1.0] if rows.len() == 12 => rows.try_into(),
+        rows => rows.try_into(),
+    }
+    .map_err(|_| needed)?;
+    let column = |k: usize| DVec3::new(rows[k], rows[k + 4], rows[k + 8]);
+    let map = DAffine3::from_cols(column(0), column(1), column(2), column(3));
+    let size = map.matrix3.determinant().abs();
+    match map.is_finite() && size.is_finite() && size > 0.0 {
+        true => Ok(map),
+        false => Err(needed.into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use neurotess::morphology::edit::SpinePlaces;
@@ -257,6 +281,17 @@ mod tests {
         for wrong in ["z", "w=1", "z=inf", "z="] {
             assert!(rotation(wrong).is_err(), "{wrong}");
         }
+        let map = matrix("0,-2,0,5, 2,0,0,6, 0,0,2,7").expect("a map");
+        assert_eq!(map.transform_point3(DVec3::X), DVec3::new(5.0, 8.0, 7.0));
+        assert_eq!(matrix("0,-2,0,5,2,0,0,6,0,0,2,7,0,0,0,1"), Ok(map));
+        for wrong in [
+            "1,2,3",
+            "1,0,0,0,0,1,0,0,0,0,0,0",
+            "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2",
+            "a",
+        ] {
+            assert!(matrix(wrong).is_err(), "{wrong}");
+        }
         assert!(factor("1").is_err() && factor("nan").is_err());
         assert_eq!(distance("inf"), Ok(f64::INFINITY));
         assert!(smoothing("0").is_err());
@@ -276,7 +311,7 @@ mod tests {
         let helped: Vec<String> = arguments
             .filter(|name| !["help", "units"].contains(&name.as_str()))
             .collect();
-        let all = "x --mirror x --rotate z=1 --recenter --spines 1 --simplify 1 --resample 1 --smooth auto --prune 1 --within 1 \
+        let all = "x --matrix 1,0,0,0,0,1,0,0,0,0,1,0 --mirror x --rotate z=1 --recenter --spines 1 --simplify 1 --resample 1 --smooth auto --prune 1 --within 1 \
                    --drop-types 7 --cut 1 --subtree 1 \
                    --join 1 --reroot 1 --mend-radii --scale 2 --types 1=2";
         let all: All = clap::Parser::parse_from(all.split_whitespace());
