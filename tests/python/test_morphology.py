@@ -271,8 +271,10 @@ def test_lists_homes_and_addresses_are_read(
     assert nt.read("~/mine.swc", format="swc").name == "mine"
     with pytest.raises(nt.MissingFileError, match="there is no such file"):
         nt.read(tmp_path / "none.swc", format="swc")
-    with pytest.raises(IsADirectoryError, match="is a folder: neurotess.mesh_many takes one"):
-        nt.read(tmp_path)
+    (tmp_path / "notes.txt").write_text("none")
+    assert [one.name for one in nt.read(tmp_path)] == sorted(one.stem for one in tmp_path.glob("*.swc"))
+    with pytest.raises(IsADirectoryError, match="is a folder: neurotess.read and neurotess.mesh_many take one"):
+        nt.mesh(tmp_path)
     monkeypatch.setitem(sys.modules, "fsspec", None)
     with pytest.raises(ImportError, match="pip install fsspec"):
         nt.read("https://example.org/cell.swc")

@@ -86,6 +86,10 @@ def test_values_of_ones_own_are_in_the_page(cell: nt.Morphology) -> None:
     assert len({shown, nt.html(cell, values=far, color_by="type"), nt.html(cell, values=far, range=(0, 10))}) == 3
     assert shown == nt.html([cell], values=[far], values_title="distance", unit="µm", color_by="value")
     nt.html([cell, cell], values=[{"section": np.arange(len(cell.sections))}, None])
+    played = nt.html(cell, values=np.outer([0, 1, 2], far), times=[0, 0.5, 1], values_title="voltage", unit="mV")
+    assert len({shown, played, nt.html(cell, values=np.outer([0, 1, 3], far), times=[0, 0.5, 1])}) == 3
+    with pytest.raises(ValueError, match="numbers of 2 frames"):
+        nt.html(cell, values=np.outer([0, 1, 2], far), times=[0, 1])
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"values": [1, 2]}, r"values= of granule.* are 2: it has 100 points"),
         ({"unit": "mV"}, r"unit='mV' is of values: give values=, too"),

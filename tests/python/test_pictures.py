@@ -101,6 +101,62 @@ def test_films_go_around_and_through_time(cell: nt.Morphology, circuit_folder: P
         nt.film(cell, turntable=True, legends=False)
 
 
+def test_numbers_over_time_are_drawn_and_filmed(cell: nt.Morphology) -> None:
+    times = np.arange(0, 4, 0.5)
+    sections = len(cell.sections)
+    # Each time has one number everywhere.
+    rising = np.repeat(times[:, None], len(cell), axis=1)
+    options = {"times": times, "range": (0, 4), "legend": False, **SMALL}
+
+    def shown(values: object, time: float) -> np.ndarray:
+        return np.asarray(nt.render(cell, values=values, time=time, **options))
+
+    def still(number: float) -> np.ndarray:
+        return np.asarray(nt.render(cell, values=[number] * len(cell), range=(0, 4), legend=False, **SMALL))
+
+    assert (shown(rising, 1.5) == still(1.5)).all() and (shown(rising, 3.9) == still(3.5)).all()
+    assert (shown(rising.T, 1.5) == still(1.5)).all()
+    by_section = [np.repeat(times[None], 3, axis=0) for _ in range(sections)]
+    assert (shown({"segment": by_section}, 1.5) == still(1.5)).all()
+    # A variable step: the last number is held.
+    uneven = {"times": [0, 1, 4], "time": 3.0, "range": (0, 4), "legend": False, **SMALL}
+    held = nt.render(cell, values=np.array([[0.0], [2.0], [4.0]]) * np.ones(len(cell)), **uneven)
+    assert (np.asarray(held) == still(2.0)).all()
+    film = list(nt.film(cell, values=rising, time=(0, 4, 1), **options))
+    # Films are one picture that is colored anew: rounded once more.
+    off = np.abs(np.asarray(film[3]).astype(int) - still(3.0))
+    assert len(film) == 4 and off.max() <= 2 and (np.asarray(film[0]) != np.asarray(film[3])).any()
+    for wrong, message in [
+        ({"values": rising}, r"or times= of their frames"),
+        ({"values": rising, "times": times[1:]}, r"numbers of 7 frames are needed"),
+        ({"values": rising, "times": times[::-1]}, r"each later than the one before"),
+        ({"values": rising[:, 1:], "times": times}, r"it has 100 points"),
+        ({"values": {"segment": by_section[1:-1]}, "times": times}, r"a list with an array for each of"),
+        ({"values": {"segment": by_section}}, r"are over time: give times="),
+        ({"values": rising[0], "time": 1.0}, r"time= needs times="),
+        ({"times": times}, r"times= are of the frames of values"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            nt.render(cell, **wrong)
+    with pytest.raises(nt.RenderError, match="has no values at 9 ms: choose a time from 0 to below 4"):
+        nt.render(cell, values=rising, times=times, time=9)
+
+
+def test_segments_are_where_they_are_along_their_sections(cell: nt.Morphology) -> None:
+    from neurotess._series import Times, segments_of
+
+    times = Times([0.0, 1.0])
+    count = len(cell.sections)
+    columns, soma, numbers = segments_of(cell, [np.zeros((2, 1))] + [np.ones((2, 2))] * count, times)
+    assert soma == 0 and numbers.shape == (2, 1 + 2 * count) and numbers[0].tolist() == [0.0] + [1.0] * 2 * count
+    own = cell.sections[-1].points
+    before = cell.points[cell.parents[len(cell) - len(own)]]
+    ways = np.cumsum(np.linalg.norm(np.diff(own, axis=0, prepend=before[None]), axis=1))
+    second = ways / ways[-1] >= 0.5
+    assert second.any() and not second.all()
+    assert (columns[len(cell) - len(own) :] == 1 + 2 * (count - 1) + second).all()
+
+
 def test_notebooks_and_files_get_png(cell: nt.Morphology, tmp_path: Path) -> None:
     picture = nt.render(cell, transparent=True, **SMALL)
     assert picture._repr_png_().startswith(b"\x89PNG")
@@ -287,6 +343,24 @@ def test_views_show_times(circuit_folder: Path) -> None:
     slider.value = times[3]
     assert view.time == times[3]
     view.close()
+
+
+def test_surfaces_are_drawn_alone(cell: nt.Morphology) -> None:
+    from types import SimpleNamespace
+
+    mesh = nt.mesh(cell, level=2)
+    alone = np.asarray(mesh.render(color="teal", legend=False, **SMALL))
+    assert (alone[..., :3].min(axis=2) < 200).any()
+    red, _, blue = (alone[..., k].astype(int)[alone[..., 0] < 250] for k in range(3))
+    assert (blue - red).mean() > 10
+    other = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces)
+    assert (np.asarray(nt.render(other, **SMALL)) == np.asarray(nt.render([], meshes=other, **SMALL))).all()
+    both = nt.render([cell, mesh], **SMALL)
+    assert (np.asarray(both) == np.asarray(nt.render(cell, meshes=[mesh], **SMALL))).all()
+    with pytest.raises(ValueError, match="there is no cell to draw"):
+        nt.render([])
+    with pytest.raises(ValueError, match="values= are of cells"):
+        mesh.render(values=[1.0])
 
 
 def test_meshes_are_drawn_from_files_and_from_memory(cell: nt.Morphology, tmp_path: Path) -> None:

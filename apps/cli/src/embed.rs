@@ -4,6 +4,8 @@
 
 pub use crate::commands::convert::EditRecipe;
 #[cfg(feature = "render")]
+pub use crate::commands::html::page_recording;
+#[cfg(feature = "render")]
 pub use crate::commands::render::{
     DrawError, Drawing, DrawingColors, DrawingInput, Picked, palette,
 };

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use neurotess::circuit::{Instance, NodeRef, soma_center};
-use neurotess::coloring::{self, ColorBy, ColorScheme, OwnColors, OwnValues, rgb};
+use neurotess::coloring::{
+    self, ColorBy, ColorScheme, OwnColors, OwnSeries, OwnValues, Recording, rgb,
+};
 use neurotess::generate::{GenerateOptions, generate_stoppable};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
@@ -26,7 +28,7 @@ use rayon::prelude::*;
 use crate::cell::Cell;
 use crate::circuit::{Circuit, node_ref};
 use crate::errors;
-use crate::picture::{GivenValues, own_values};
+use crate::picture::{GivenSeries, GivenValues, own_series, own_values};
 use crate::surface::Recipe;
 use crate::work::{Stop, stoppable};
 
@@ -73,12 +75,39 @@ struct Shown {
     placements: Vec<(usize, Placement, String)>,
 }
 
+/// Numbers of one's own.
+enum Own {
+    Still(OwnValues),
+    OverTime(OwnSeries),
+}
+
+impl Own {
+    /// Numbers as a page plays them; `range`: those at the ends of the scale, if they are not the least and the greatest.
+    fn recording(
+        self,
+        cells: &[coloring::Cell<'_>],
+        range: Option<[f32; 2]>,
+    ) -> Result<PageRecording, Unmade> {
+        match self {
+            Self::Still(values) => Ok(PageRecording::still(cells, &values, range)),
+            Self::OverTime(series) => {
+                let own: Vec<usize> = (0..cells.len()).collect();
+                let recording = Recording::of_series(series, cells, &own);
+                embed::page_recording(&recording, None, range, cells.len())
+                    .map_err(|e| Unmade::Values(e.to_string()))
+            }
+        }
+    }
+}
+
 /// Why there is no page.
 enum Unmade {
     /// A cell has no mesh.
     Mesh(String),
     /// Cells that a page cannot show.
     Page(WebError),
+    /// Numbers that cannot be shown.
+    Values(String),
     /// More than people send.
     Large(usize),
 }
@@ -94,11 +123,17 @@ pub(crate) fn page(
     recipe: &Recipe,
     keywords: Keywords,
     values: Option<GivenValues<'_>>,
+    series: Option<GivenSeries<'_>>,
     path: Option<PathBuf>,
     force: bool,
 ) -> PyResult<Option<String>> {
     let colors = Colors::of(&keywords).map_err(|e| errors::option(py, &e))?;
     let values = values.map(own_values).transpose()?;
+    let series = series.map(own_series).transpose()?;
+    let own = match (series, values) {
+        (Some((series, _)), _) => Some(Own::OverTime(series)),
+        (None, values) => values.map(Own::Still),
+    };
     let shown = match circuit {
         Some((circuit, nodes)) => Shown::nodes(py, &circuit, nodes)?,
         None => Shown::alone(&cells),
@@ -107,7 +142,7 @@ pub(crate) fn page(
     let made = stoppable(py, None, &Stop::default(), move |stopped| {
         let meshes = shown.meshes(&options, stopped)?;
         let factor = options.radius_factor;
-        let html = shown.page(&meshes, factor, &keywords, colors, values.as_ref())?;
+        let html = shown.page(&meshes, factor, &keywords, colors, own)?;
         match html.len() > MAX_PAGE_BYTES && !force {
             true => Err(Unmade::Large(html.len())),
             false => Ok(html),
@@ -249,7 +284,7 @@ impl Shown {
         radius_factor: f64,
         keywords: &Keywords,
         colors: Colors,
-        values: Option<&OwnValues>,
+        own: Option<Own>,
     ) -> Result<String, Unmade> {
         let placed = self.placements.iter();
         let cells: Vec<PageCell<'_>> = placed
@@ -264,7 +299,8 @@ impl Shown {
             })
             .collect();
         let colored: Vec<_> = cells.iter().map(|page| page.cell).collect();
-        let recording = values.map(|values| PageRecording::still(&colored, values, keywords.range));
+        let recording = own.map(|own| own.recording(&colored, keywords.range));
+        let recording = recording.transpose()?;
         let scheme = ColorScheme {
             palette: colors.palette,
             own_colors: colors.own_colors.clone(),
@@ -303,6 +339,7 @@ impl Unmade {
     fn told(self, py: Python<'_>) -> PyErr {
         match self {
             Self::Mesh(message) => errors::mesh(py, &message),
+            Self::Values(message) => PyValueError::new_err(message),
             Self::Page(WebError::Shader(fault)) => errors::bug(fault),
             Self::Page(error) => PyValueError::new_err(error.to_string()),
             Self::Large(bytes) => {

@@ -9,13 +9,13 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
-use neurotess::circuit::NodeRef;
-use neurotess::coloring::{CellValues, OwnValues};
+use neurotess::circuit::{NodeRef, TimeAxis};
+use neurotess::coloring::{CellSeries, CellValues, OwnSeries, OwnValues};
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput};
 use numpy::ndarray::Array3;
-use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray3};
+use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -87,20 +87,68 @@ pub(crate) fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnV
     })
 }
 
+/// By cell the columns of its points and of its somata (−1: none) and the numbers of the columns by frame; start and step
+/// of the frames (ms); what they are, and their unit; times of pictures, as ``0:10:0.5``.
+pub(crate) type GivenSeries<'py> = (
+    Vec<(PyReadonlyArray1<'py, i32>, i32, PyReadonlyArray2<'py, f32>)>,
+    [f64; 2],
+    String,
+    String,
+    Option<String>,
+);
+
+pub(crate) fn own_series(
+    (cells, [start, step], title, unit, time): GivenSeries<'_>,
+) -> PyResult<(OwnSeries, Option<String>)> {
+    let column = |column: i32| u32::try_from(column).ok();
+    let mut frames = 0;
+    let of_cell =
+        |(points, soma, values): &(PyReadonlyArray1<'_, i32>, i32, PyReadonlyArray2<'_, f32>)| {
+            let (rows, columns) = values.as_array().dim();
+            frames = rows as u64;
+            Ok(CellSeries {
+                points: points.as_slice()?.iter().copied().map(column).collect(),
+                soma: column(*soma),
+                columns,
+                values: values.as_slice()?.to_vec(),
+            })
+        };
+    let cells: PyResult<_> = cells.iter().map(of_cell).collect();
+    let series = OwnSeries {
+        cells: cells?,
+        time: TimeAxis {
+            start,
+            end: start + frames as f64 * step,
+            step,
+            frames,
+        },
+        title,
+        unit,
+    };
+    Ok((series, time))
+}
+
 #[pymethods]
 impl Drawing {
     #[new]
+    #[expect(clippy::too_many_arguments, reason = "what a drawing is made of")]
     fn new(
         py: Python<'_>,
         cells: Vec<PyRef<'_, Cell>>,
         circuit: Option<GivenCircuit>,
         options: Vec<String>,
         values: Option<GivenValues<'_>>,
+        series: Option<GivenSeries<'_>>,
         scale: Option<Vec<Rgb>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
         let values = values.map(own_values).transpose()?;
-        let colors = DrawingColors { values, scale };
+        let series = series.map(own_series).transpose()?;
+        let colors = DrawingColors {
+            values,
+            series,
+            scale,
+        };
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
         let made = stoppable(py, None, &Stop::default(), move |stopped| {
             let gpu = device(adapter)?;

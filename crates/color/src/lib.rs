@@ -23,6 +23,8 @@ mod film;
 mod markers;
 mod meshes;
 mod own_colors;
+#[cfg(feature = "circuit")]
+mod own_series;
 mod own_values;
 mod palette_file;
 mod path_distance;
@@ -51,6 +53,8 @@ pub use markers::{
 };
 pub use meshes::mesh_color;
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
+#[cfg(feature = "circuit")]
+pub use own_series::{CellSeries, OwnSeries};
 pub use own_values::{CellValues, OwnValues, by_values};
 pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;

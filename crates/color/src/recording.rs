@@ -21,6 +21,7 @@ use thiserror::Error;
 
 use crate::categorical::first_values;
 use crate::compartments::{matched, on_cell};
+use crate::own_series::Memory;
 use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
@@ -65,7 +66,7 @@ pub struct Recording {
     pub unit: String,
     /// Times (ms) of its frames, or of steps through spikes.
     pub time: TimeAxis,
-    color_keys: Vec<Vec<u32>>,
+    pub(crate) color_keys: Vec<Vec<u32>>,
     pub(crate) has_values: Vec<bool>,
     pub(crate) source: Source,
 }
@@ -78,6 +79,8 @@ pub(crate) enum Source {
     Report(Report, Vec<PopulationMatch>),
     /// Spikes, and the instances by population of the file.
     Spikes(Spikes, Vec<InstancesOfNode>),
+    /// Numbers of one's own.
+    Memory(Memory),
 }
 
 impl Recording {
@@ -235,6 +238,10 @@ impl Recording {
                 };
                 let all = spikes.populations.iter().zip(firing).flat_map(flashes);
                 Ok(self.flashes(all, shows))
+            }
+            Source::Memory(memory) => {
+                let frame = memory.frame(time, shows);
+                frame.ok_or_else(|| self.no_values(time))
             }
         }
     }

@@ -68,7 +68,7 @@ impl Recording {
     fn population(&self, of: &TracedCompartment) -> Option<&ReportPopulation> {
         match &self.source {
             Source::Report(report, _) => report.populations.get(of.population),
-            Source::Spikes(..) => None,
+            Source::Spikes(..) | Source::Memory(_) => None,
         }
     }
 

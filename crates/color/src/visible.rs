@@ -33,7 +33,7 @@ impl VisibleValues {
         self.keys.is_empty()
     }
 
-    /// Number of compartments that are read for a time; 0 for spikes, which have none.
+    /// Number of compartments that are read from a file for a time; 0 for spikes, which have none.
     pub fn compartments(&self) -> usize {
         self.parts.iter().map(|part| part.compartments.len()).sum()
     }
@@ -50,7 +50,7 @@ impl Recording {
     /// Finds the values of color keys, as [`Recording::color_keys`] gives them to cells.
     pub fn visible(&self, keys: &[VisibleKey]) -> VisibleValues {
         let parts = match &self.source {
-            Source::Spikes(..) => Vec::new(),
+            Source::Spikes(..) | Source::Memory(_) => Vec::new(),
             Source::Report(_, parts) => parts
                 .iter()
                 .map(|part| {
@@ -105,6 +105,15 @@ impl Recording {
                 }
                 if !any {
                     return Err(self.no_values(time));
+                }
+            }
+            Source::Memory(memory) => {
+                if self.time.frame_at(time).is_none() {
+                    return Err(self.no_values(time));
+                }
+                for (value, key) in values.iter_mut().zip(&visible.keys) {
+                    let own = memory.at(time, key.instance as usize).unwrap_or_default();
+                    *value = own.get(key.color_key as usize).copied().unwrap_or(f32::NAN);
                 }
             }
             Source::Spikes(spikes, firing) => {

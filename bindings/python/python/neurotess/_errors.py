@@ -116,7 +116,7 @@ def missing_file(file: str) -> MissingFileError:
 
 def folder(file: str) -> FolderError:
     """The exception for a folder."""
-    told = "is a folder: neurotess.mesh_many takes one, neurotess.read a file or a list of them"
+    told = "is a folder: neurotess.read and neurotess.mesh_many take one"
     return _numbered(FolderError(file, None, told), errno.EISDIR)
 
 

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ._colormaps import Colormap
+    from ._colors import Color
     from ._morphology import Morphology
+    from ._pictures import Image
     from ._places import OnLines
     from ._reports import Report
 
@@ -339,6 +341,21 @@ class Mesh:
             "section": self.section,
             "radius": self.radius,
         }
+
+    # Pictures
+
+    def render(self, *, color: Color | None = None, **options: Any) -> Image:
+        """Draws the mesh alone, in one color. The options are those of `neurotess.render`, which draws it beside cells,
+        too: ``neurotess.render([cell, mesh])``.
+
+        >>> import neurotess as nt
+        >>> mesh = nt.mesh(nt.synth("granule", points=100))
+        >>> mesh.render(color="teal", view="iso").save("mesh.png")        # doctest: +SKIP
+        """
+        from ._pictures import render
+
+        one: Any = self if color is None else {"mesh": self, "color": color}
+        return render([], meshes=[one], **options)
 
     # Python
 

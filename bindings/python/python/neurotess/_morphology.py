@@ -8,7 +8,7 @@ import warnings
 from . import _neurotess
 from ._errors import ReadWarning
 from ._parts import Neurite, Notice, Section, Soma
-from ._sources import read_cell
+from ._sources import expanded, files_of, read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -365,7 +365,7 @@ def read(
     webKnossos and KNOSSOS, and JSON of MouseLight and CATMAID.
 
     `source` is a path (``~`` is your folder), the bytes of a file, an open file, or an address (``https://…``,
-    ``s3://…``), which needs fsspec; of a list of these it is a list of cells. ``merged.h5#cells/a`` is one morphology of
+    ``s3://…``), which needs fsspec; of a list of these it is a list of cells, and of a folder that of its tracings. ``merged.h5#cells/a`` is one morphology of
     an H5 file that holds many. `format` (``"swc"``, ``"asc"``, ``"h5"``, ``"nml"``, ...) is for bytes and open files
     whose content does not tell it, and `name` is what errors call them.
 
@@ -379,6 +379,8 @@ def read(
     >>> cell.soma
     <Soma: point, radius 5 µm>
     """
+    if isinstance(source, (str, os.PathLike)) and os.path.isdir(expanded(source)):
+        source = files_of(source)
     if isinstance(source, (list, tuple)):
         return [_with_warnings(read_cell(one, format, name, strict)) for one in source]
     return _with_warnings(read_cell(source, format, name, strict))

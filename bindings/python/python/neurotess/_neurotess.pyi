@@ -217,6 +217,8 @@ class Report:
     ) -> NDArray[np.float32]: ...
 
 _View = tuple[list[float], list[float], list[float], float, bool]
+_Columns = tuple[NDArray[np.int32], int, NDArray[np.float32]]
+_Series = tuple[list[_Columns], tuple[float, float], str, str, str | None]
 
 @final
 class Drawing:
@@ -226,6 +228,7 @@ class Drawing:
         circuit: tuple[_Path, list[tuple[int, int]] | None] | None,
         options: list[str],
         values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
+        series: _Series | None,
         scale: list[list[int]] | None,
         adapter: str | None,
     ) -> Drawing: ...
@@ -245,6 +248,7 @@ def page(
     recipe: Recipe,
     keywords: dict[str, Any],
     values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
+    series: _Series | None,
     path: _Path | None,
     force: bool,
 ) -> str | None: ...

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any, Literal, overload
 
+    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from ._colors import Color
@@ -40,6 +41,7 @@ def html(
     *,
     color_by: ColorBy | None = None,
     values: Values | None = None,
+    times: ArrayLike | None = None,
     values_title: str | None = None,
     unit: str | None = None,
     range: tuple[float, float] | None = None,
@@ -73,7 +75,8 @@ def html(
     the cells.
 
     `values`: numbers of your own as in `render`, with a `values_title` and a `unit` for the legend. The page begins with
-    them, unless `color_by` says otherwise. They are stored in 255 steps of their range.
+    them, unless `color_by` says otherwise. They are stored in 255 steps of their range. Those over time, with the `times` of
+    their frames, are played: all frames, or 200 that are evenly spread.
 
     `least_width`, `radius_factor`, `radius`, `min_radius`, `soma`, `ring` and `types` are those of `render`; of circuits
     `nodes`, `node_set`, `population`, `region`, `sample` and `sample_seed` select cells, as in `Circuit.select`.
@@ -115,9 +118,9 @@ def html(
         cells = []
     else:
         cells = _cells(what, chosen)
-    told = _told(cells, is_alone(what), values, values_title, unit)
+    still, series = _told(cells, is_alone(what), values, times, values_title, unit)
     try:
-        made = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, told, path, force)
+        made = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, path, force)
     except OptionError as error:
         from ._errors import with_given
 
@@ -130,13 +133,12 @@ def html(
     return Path(path)
 
 
-def _told(cells: list[Any], alone: bool, values: Any, title: str | None, unit: str | None) -> Told | None:
-    if values is None:
-        for name, given in (("values_title", title), ("unit", unit)):
-            if given is not None:
-                raise ValueError(f"{name}={given!r} is of values: give values=, too")
-        return None
-    return values_of(cells, alone, {"values": values, "title": title, "unit": unit})
+def _told(
+    cells: list[Any], alone: bool, values: Any, times: Any, title: str | None, unit: str | None
+) -> Told:
+    if values is None and title is not None:
+        raise ValueError(f"values_title={title!r} is of values: give values=, too")
+    return values_of(cells, alone, {"values": values, "times": times, "title": title, "unit": unit})
 
 
 def _keywords(given: dict[str, Any]) -> dict[str, Any]:

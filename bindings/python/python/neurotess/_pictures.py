@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from typing import Any, Literal
 
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from ._colormaps import Colormap
     from ._colors import Color
@@ -88,6 +88,7 @@ def render(
     color_by: ColorBy | None = None,
     color_by_attribute: str | None = None,
     values: Values | None = None,
+    times: ArrayLike | None = None,
     title: str | None = None,
     unit: str | None = None,
     report: str | os.PathLike[str] | None = None,
@@ -140,7 +141,7 @@ def render(
     adapter: str | None = None,
 ) -> Image:
     """Draws cells or a circuit, without a window: a cell or a file (or whatever `mesh` takes), several of them,
-    or a `Circuit`.
+    or a `Circuit`; or surfaces, alone or among cells: a `Mesh`, or any with `vertices` and `faces` (µm), as those of trimesh.
 
     The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
 
@@ -152,7 +153,10 @@ def render(
 
     Colors: `color_by`; `values` of your own, with a `title` and a `unit` for the legend: an array with a number for each
     of ``cell.points``, of the rows of ``cell.to_table()`` (with the soma's) or of ``cell.sections``; as in
-    ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
+    ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. With `times`
+    (ms) they are over time: an array with a row, or a column, for each time, or ``{"segment": arrays}``, an array for each
+    of ``cell.sections`` (the soma's before them, or not) with the segments' numbers, as a simulator records them; `time`
+    (ms) is the one that is shown, of `film` those. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
     `time` (ms); `range`; `colormap`: a name, one of matplotlib's, or a list of colors from low to high; `trim_colormap`;
     `palette`: a name, a file, or colors of your own by the name
     of a type or of anything else in the legend, as in ``{"axon": "#ff8800", "L5_PC": "#2ca02c"}``, over those of the
@@ -190,6 +194,7 @@ def render(
         "color_by": color_by,
         "color_by_attribute": color_by_attribute,
         "values": values,
+        "times": times,
         "title": title,
         "unit": unit,
         "report": report,
@@ -255,7 +260,8 @@ def film(
     **options: Any,
 ) -> Iterator[Image]:
     """Draws a series of pictures, one after the other: once around with `turntable` (36 pictures, or `frames`), or
-    through a report with `time` (from, to, and the step, in ms, or `frames`). The options are those of `render`.
+    through a report, or through `values` over time, with `time` (from, to, and the step, in ms, or `frames`). The options
+    are those of `render`.
 
     >>> import neurotess as nt
     >>> for number, picture in enumerate(nt.film(cell, turntable=True)): # doctest: +SKIP
@@ -272,7 +278,8 @@ def film(
 
 def _check_pairs(options: Mapping[str, Any]) -> None:
     """Checks that options which belong together are there together."""
-    for name, other in (("eye", "target"), ("time", "report")):
+    over_time = "report" if options.get("values") is None else "times"
+    for name, other in (("eye", "target"), ("time", over_time)):
         if options.get(name) is not None and options.get(other) is None:
             raise OptionError(f"{name}= needs {other}=, too", name, f"{other}= is needed, too")
 

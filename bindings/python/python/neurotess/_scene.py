@@ -9,7 +9,7 @@ from ._colormaps import is_own, scale_of
 from ._colors import text_of
 from ._errors import OptionError, RenderError, missing_file
 from ._meshes import Mesh
-from ._sources import cell_of, is_alone
+from ._sources import cell_of, is_alone, is_surface
 from ._values import values_of
 
 TYPE_CHECKING = False
@@ -50,12 +50,29 @@ def _cells(what: Any, options: dict[str, Any]) -> list[Morphology]:
     many = [what] if is_alone(what) else list(what)
     if any(isinstance(one, DrawnCircuit) for one in many):
         raise ValueError("a circuit is drawn alone")
-    if not many:
+    if not many and not options.get("meshes"):
         raise ValueError("there is no cell to draw")
     given = [name for name in SELECTION if options.get(name) is not None]
     if given:
         raise ValueError(f"{given[0]}= selects cells of a circuit, and none is drawn")
     return [cell_of(one) for one in many]
+
+
+def _without_surfaces(what: Any, options: dict[str, Any]) -> Any:
+    """The cells of what is drawn; surfaces among them become meshes of the options."""
+    from collections.abc import Mapping
+
+    if is_surface(what):
+        what = [what]
+    elif is_alone(what) or isinstance(what, DrawnCircuit):
+        return what
+    many = list(what)
+    surfaces = [one for one in many if is_surface(one)]
+    if surfaces:
+        given = options.get("meshes")
+        alone = isinstance(given, (str, os.PathLike, Mapping)) or is_surface(given)
+        options["meshes"] = [*surfaces, *([] if given is None else [given] if alone else given)]
+    return [one for one in many if not is_surface(one)]
 
 
 def check_names(name: str, function: Callable[..., Any], options: dict[str, Any]) -> None:
@@ -87,11 +104,12 @@ def drawing_of(
         raise RenderError("this build draws no pictures: build it with the feature 'render'")
     quiet_adapters()
     options = _with_colors(options)
+    what = _without_surfaces(what, options)
     if isinstance(what, DrawnCircuit):
         cells, circuit = [], (what._path, _chosen(what, options))
     else:
         cells, circuit = _cells(what, options), None
-    values = values_of(cells, is_alone(what), options)
+    still, series = values_of(cells, is_alone(what), options)
     scale = _own_scale(options)
     meshes = options.pop("meshes", None)
     for name, is_file in (("points", True), ("report", circuit is not None)):
@@ -102,7 +120,7 @@ def drawing_of(
         options["mesh"] = _mesh_words(meshes, folder)
         words = _options.arguments(options)
         try:
-            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, values, scale, adapter)
+            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, still, series, scale, adapter)
         except OptionError as error:
             from ._errors import with_given
 
@@ -132,7 +150,7 @@ def _mesh_words(meshes: Any, folder: str) -> list[str]:
 
     if meshes is None:
         return []
-    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or hasattr(meshes, "vertices")
+    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or is_surface(meshes)
     words = []
     for number, one in enumerate([meshes] if alone else meshes):
         look = dict(one) if isinstance(one, Mapping) else {"mesh": one}

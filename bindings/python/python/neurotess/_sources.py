@@ -19,13 +19,13 @@ EXTENSIONS = ("swc", "eswc", "asc", "nml", "traces", "swc.gz", "asc.gz")
 
 def cell_of(source: Any) -> Morphology:
     """The cell; what is odd in a file is warned of."""
-    from ._morphology import Morphology, read
+    from ._morphology import Morphology, _with_warnings
 
     if isinstance(source, Morphology):
         return source
     package = package_of(source)
     if package is None:
-        return read(source)
+        return _with_warnings(read_cell(source, None, None, False))
     return _from_package(source, package)
 
 
@@ -56,6 +56,13 @@ def package_of(source: Any) -> str | None:
         if package in ("navis", "morphio", "neurom"):
             return package
     return None
+
+
+def is_surface(source: Any) -> bool:
+    """Whether it is a surface: a `Mesh`, or another package's with vertices and faces."""
+    if hasattr(source, "nodes") or isinstance(source, (str, bytes)):
+        return False
+    return hasattr(source, "vertices") and hasattr(source, "faces")
 
 
 def is_alone(source: Any) -> bool:

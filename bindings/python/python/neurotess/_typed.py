@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, Union
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ._colormaps import Colormap
     from ._colors import Color
     from ._meshes import Mesh
@@ -113,6 +115,7 @@ class RenderOptions(TypedDict, total=False):
     color_by: ColorBy | None
     color_by_attribute: str | None
     values: Values | None
+    times: ArrayLike | None
     title: str | None
     unit: str | None
     report: str | os.PathLike[str] | None
@@ -170,6 +173,7 @@ class PageOptions(TypedDict, total=False):
 
     color_by: ColorBy | None
     values: Values | None
+    times: ArrayLike | None
     values_title: str | None
     unit: str | None
     range: tuple[float, float] | None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ._series import Times, columns_of, segments_of
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,22 +15,28 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ._morphology import Morphology
+    from ._series import Columns, Series
 
     Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[Any]]
     #: By cell the numbers of its points and that of its somata; what they are, and their unit.
-    Told: TypeAlias = tuple[list[tuple[NDArray[np.float32], float]], str, str]
+    Still: TypeAlias = tuple[list[tuple[NDArray[np.float32], float]], str, str]
+    #: Numbers that do not change, or those over time.
+    Told: TypeAlias = tuple[Union[Still, None], Union[Series, None]]
 
 KINDS = ("point", "sample", "section")
 
 
-def values_of(cells: list[Morphology], alone: bool, options: dict[str, Any]) -> Told | None:
-    """Takes `values`, `title` and `unit` from the options of a picture; `alone`: its cell is no list."""
-    values, title, unit = (options.pop(name, None) for name in ("values", "title", "unit"))
+def values_of(cells: list[Morphology], alone: bool, options: dict[str, Any]) -> Told:
+    """Takes `values`, their `times`, `title` and `unit` from the options of a picture, and of such over time also the
+    `time` that is shown; `alone`: its cell is no list."""
+    values, times, title, unit = (options.pop(name, None) for name in ("values", "times", "title", "unit"))
     if values is None:
         for name, given in (("title", title), ("unit", unit)):
             if given is not None:
                 raise ValueError(f"{name}={given!r} is of values: give values=, too")
-        return None
+        if times is not None:
+            raise ValueError("times= are of the frames of values: give values=, too")
+        return None, None
     for name in ("color_by", "color_by_attribute", "report"):
         if options.get(name) is not None:
             raise ValueError(f"values= are what colors tell: leave out {name}={options[name]!r}")
@@ -38,8 +46,29 @@ def values_of(cells: list[Morphology], alone: bool, options: dict[str, Any]) -> 
         values = [values]
     elif isinstance(values, Mapping) or len(values) != len(cells):
         raise ValueError(f"values= of {len(cells)} cells are a list with an array, or None, for each")
-    told = [_of_cell(cell, one) for cell, one in zip(cells, values, strict=True)]
-    return told, str(title or ""), str(unit or "")
+    pairs = list(zip(cells, values, strict=True))
+    named = str(title or ""), str(unit or "")
+    if times is None:
+        if options.get("time") is not None:
+            raise ValueError("time= needs times=, too: those of the frames of values=")
+        return ([_of_cell(cell, one) for cell, one in pairs], *named), None
+    over_time = Times(times)
+    columns = [_over_time(cell, one, over_time) for cell, one in pairs]
+    time = options.pop("time", None)
+    ends = over_time.start, over_time.step
+    return None, (columns, ends, *named, None if time is None else str(time))
+
+
+def _over_time(cell: Morphology, values: Any, times: Times) -> Columns:
+    import numpy as np
+
+    if values is None:
+        return np.full(len(cell), -1, np.int32), -1, np.empty((times.count, 0), np.float32)
+    if isinstance(values, Mapping) and set(values) == {"segment"}:
+        return segments_of(cell, values["segment"], times)
+    kind, array = _told(values)
+    numbers = times.framed(f"values= of {cell.name}", array)
+    return columns_of(cell, _kind(cell, numbers.shape[1], kind), numbers)
 
 
 def _of_cell(cell: Morphology, values: Any) -> tuple[NDArray[np.float32], float]:
@@ -49,15 +78,16 @@ def _of_cell(cell: Morphology, values: Any) -> tuple[NDArray[np.float32], float]
         return np.full(len(cell), np.nan, np.float32), np.nan
     kind, array = _told(values)
     if array.ndim != 1 or array.dtype.kind not in "fiub":
-        raise ValueError(f"values= of {cell.name} are {array.dtype} of shape {array.shape}: one number for each is needed")
-    kinds = _kinds(cell, len(array)) if kind is None else [k for k in _kinds(cell, len(array)) if k == kind]
-    if len(kinds) != 1:
-        raise ValueError(_wrong_length(cell, len(array), kind, kinds))
+        over_time = ", or times= of their frames" if array.ndim == 2 else ""
+        raise ValueError(
+            f"values= of {cell.name} are {array.dtype} of shape {array.shape}: one number for each is needed{over_time}"
+        )
+    kind = _kind(cell, len(array), kind)
     numbers = array.astype(np.float32)
     soma = len(cell.to_table()) - len(cell)
-    if kinds == ["point"]:
+    if kind == "point":
         return numbers, np.nan
-    if kinds == ["sample"]:
+    if kind == "sample":
         return np.ascontiguousarray(numbers[soma:]), _mean(numbers[:soma])
     # Of sections the soma's number may come first, as meshes count.
     with_soma = len(numbers) > len(cell.sections)
@@ -72,9 +102,19 @@ def _told(values: Any) -> tuple[str | None, NDArray[Any]]:
     if not isinstance(values, Mapping):
         return None, np.asarray(values)
     if len(values) != 1 or next(iter(values)) not in KINDS:
+        if "segment" in values:
+            raise ValueError("values={'segment': …} are over time: give times=, too, or values of sections")
         raise ValueError(f"values= have the keys {list(values)}: one of {', '.join(map(repr, KINDS))} is needed")
     [(kind, array)] = values.items()
     return kind, np.asarray(array)
+
+
+def _kind(cell: Morphology, count: int, kind: str | None) -> str:
+    """What so many values are of."""
+    kinds = [k for k in _kinds(cell, count) if kind in (None, k)]
+    if len(kinds) != 1:
+        raise ValueError(_wrong_length(cell, count, kind, kinds))
+    return kinds[0]
 
 
 def _kinds(cell: Morphology, count: int) -> list[str]:

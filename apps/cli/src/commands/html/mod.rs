@@ -21,6 +21,7 @@ use crate::commands::render::{
 use crate::io::output;
 use crate::report::{Entry, Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
+pub use recording::page_recording;
 
 /// What `--json` prints.
 #[derive(Serialize)]

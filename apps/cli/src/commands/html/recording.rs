@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use neurotess::coloring::{Cell, DECAY, Recording};
+use neurotess::coloring::{Cell, DECAY, Recording, RecordingError};
 use neurotess::web::PageRecording;
 
 use super::HtmlArgs;
@@ -32,24 +32,30 @@ pub(super) fn read(
             "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
-    let times = match times(args.time, None)? {
-        Some(times) => times,
-        None => all_times(&recording),
-    };
-    let range = match args.range {
+    let times = times(args.time, None)?;
+    page_recording(&recording, times, args.range, cells.len()).map_err(whole)
+}
+
+/// A recording as a page plays it, at these times (ms), or at those of all its frames or of some that are evenly spread.
+/// `range`: the values at both ends of the scale, if they are not the least and the greatest; `cells`: the page's.
+///
+/// # Errors
+/// The recording has no values at one of the times, or cannot be read.
+pub fn page_recording(
+    recording: &Recording,
+    times: Option<Vec<f64>>,
+    range: Option<[f32; 2]>,
+    cells: usize,
+) -> Result<PageRecording, RecordingError> {
+    let times = times.unwrap_or_else(|| all_times(recording));
+    let range = match range {
         Some(range) => range,
-        None => recording
-            .range_at(times.iter().copied(), &|_| true)
-            .map_err(whole)?,
+        None => recording.range_at(times.iter().copied(), &|_| true)?,
     };
     let mut frames = Vec::with_capacity(times.len());
     for &time in &times {
-        let frame = recording.at(time, DECAY, &|_| true).map_err(whole)?;
-        frames.push(
-            (0..cells.len())
-                .map(|cell| frame.of(cell).to_vec())
-                .collect(),
-        );
+        let frame = recording.at(time, DECAY, &|_| true)?;
+        frames.push((0..cells).map(|cell| frame.of(cell).to_vec()).collect());
     }
     Ok(PageRecording {
         title: recording.title.clone(),

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, OwnValues,
-    Recording, by_attribute, by_values,
+    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, OwnSeries,
+    OwnValues, Recording, by_attribute, by_values,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -70,7 +70,11 @@ impl PictureColors {
 
     /// The widths of neurites become those of these options.
     pub(crate) fn set_widths(&mut self, args: &RenderArgs) {
-        self.widths = (args.least_width(self.neurons), args.radius_factor());
+        let least = match self.neurons {
+            0 => 0.0,
+            neurons => args.least_width(neurons),
+        };
+        self.widths = (least, args.radius_factor());
     }
 
     /// Least width (pixels) of neurites; 0: as wide as they are.
@@ -122,7 +126,15 @@ impl PictureColors {
     }
 }
 
-/// Colors of cells: by the options, or by `values` of one's own. `instances`: those of a circuit; `of_cells`: the cell
+/// Numbers of one's own.
+pub(crate) enum OwnNumbers<'a> {
+    /// That do not change.
+    Still(&'a OwnValues),
+    /// Over time.
+    OverTime(Box<OwnSeries>),
+}
+
+/// Colors of cells: by the options, or by numbers of one's `own`. `instances`: those of a circuit; `of_cells`: the cell
 /// that each instance shows.
 ///
 /// # Errors
@@ -131,7 +143,7 @@ pub(crate) fn of_pictures(
     cells: &[&MeshedCell],
     (instances, of_cells): (Option<&CircuitInstances>, &[usize]),
     args: &RenderArgs,
-    values: Option<&OwnValues>,
+    own: Option<OwnNumbers<'_>>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
     let background = args.background();
@@ -153,8 +165,17 @@ pub(crate) fn of_pictures(
             radius_factor: args.radius_factor(),
         })
         .collect();
-    let mut colored = match (&args.report, instances) {
-        (Some(report), Some(instances)) => {
+    let (values, series) = match own {
+        Some(OwnNumbers::Still(values)) => (Some(values), None),
+        Some(OwnNumbers::OverTime(series)) => (None, Some(series)),
+        None => (None, None),
+    };
+    let mut colored = match (&args.report, series, instances) {
+        (_, Some(series), _) => {
+            let recording = Recording::of_series(*series, &cells, of_cells);
+            over_time(recording, args, &scheme, reporter)?
+        }
+        (Some(report), _, Some(instances)) => {
             let nodes = instances.with_cells(of_cells);
             let recording =
                 Recording::open(report, &instances.circuit, &cells, &nodes).map_err(whole)?;

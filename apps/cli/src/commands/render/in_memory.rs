@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Parser;
 use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
-use neurotess::coloring::{MarkerSet, OwnValues};
+use neurotess::coloring::{MarkerSet, OwnSeries, OwnValues};
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::color::Rgb;
 use neurotess::render::overlay::Overlay;
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::args::RenderArgs;
 use super::cells::{self, MeshedCell};
 use super::circuit_instances::CircuitInstances;
-use super::coloring::PictureColors;
+use super::coloring::{OwnNumbers, PictureColors};
 use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
@@ -53,6 +53,8 @@ pub enum DrawingInput<'a> {
 pub struct DrawingColors {
     /// Numbers of the cells, which they are colored by.
     pub values: Option<OwnValues>,
+    /// Numbers of the cells over time, instead, and the times of the pictures, as `--time` has them.
+    pub series: Option<(OwnSeries, Option<String>)>,
     /// Colors of numbers, instead of a color map.
     pub scale: Option<Vec<Rgb>>,
 }
@@ -120,9 +122,18 @@ impl Drawing {
             args.cells.list(nodes);
         }
         args.scale = colors.scale;
+        let (series, time) = colors.series.unzip();
+        if let Some(time) = time.flatten() {
+            args.time = Some(time.parse().map_err(DrawError::Option)?);
+        }
+        let own = match (series, &colors.values) {
+            (Some(series), _) => Some(OwnNumbers::OverTime(Box::new(series))),
+            (None, Some(values)) => Some(OwnNumbers::Still(values)),
+            (None, None) => None,
+        };
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
-        let made = Self::made(gpu, input, args, colors.values.as_ref(), &reporter);
+        let made = Self::made(gpu, input, args, own, &reporter);
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),
@@ -138,11 +149,11 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         args: Box<RenderArgs>,
-        values: Option<&OwnValues>,
+        own: Option<OwnNumbers<'_>>,
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
         vertex_source::mode(&args)?;
-        if values.is_none() {
+        if own.is_none() {
             checks::check_value(&args)?;
         }
         let RenderScene {
@@ -165,14 +176,14 @@ impl Drawing {
         if reporter.stopped().load(Ordering::Relaxed) {
             anyhow::bail!("stopped");
         }
-        if placements.is_empty() {
+        if placements.is_empty() && args.meshes.mesh.is_empty() {
             anyhow::bail!("there is no cell to draw");
         }
         let shown: Vec<&MeshedCell> = cells.iter().collect();
         let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
         let meshes = SceneMeshes::read(&args.meshes, reporter)?;
         let shown_by = (instances.as_ref(), &of_cells[..]);
-        let mut colored = coloring::of_pictures(&shown, shown_by, &args, values, reporter)?;
+        let mut colored = coloring::of_pictures(&shown, shown_by, &args, own, reporter)?;
         colored.add_meshes(&meshes);
         let mut spheres = bounds::spheres(&shown, &placements);
         spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
