@@ -251,6 +251,17 @@ pub enum Fault {
         /// Those that are there.
         there: String,
     },
+    /// An id that several populations have.
+    #[error(
+        "populations '{}' and '{}' both have a node {id}: name the population, too",
+        populations[0], populations[1]
+    )]
+    AmbiguousId {
+        /// The id.
+        id: u64,
+        /// Names of two of them.
+        populations: [String; 2],
+    },
     /// Nothing to show.
     #[error("no population of nodes could be read: see the errors above")]
     NothingRead,

@@ -1,5 +1,7 @@
 //! Which nodes are meant: by id, by node set, within a box, a sample of them.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use crate::{Circuit, CircuitError, Fault, NodeRef};
@@ -9,7 +11,8 @@ use crate::{Circuit, CircuitError, Fault, NodeRef};
 pub struct Selection {
     /// Only of the population of this name.
     pub population: Option<String>,
-    /// Only nodes with these ids: ranges, both ends included.
+    /// Only nodes with these ids: ranges, both ends included. Each must be of a single population among those that have
+    /// morphologies.
     pub ids: Option<Vec<(u64, u64)>>,
     /// Only these nodes, in any order.
     pub nodes: Option<Vec<NodeRef>>,
@@ -26,7 +29,7 @@ impl Circuit {
     /// machine; smaller samples are parts of larger ones with the same seed.
     ///
     /// # Errors
-    /// A population or node set that is not there.
+    /// A population or node set that is not there; an id of several populations.
     pub fn select(&self, selection: &Selection) -> Result<Vec<NodeRef>, CircuitError> {
         if let Some(name) = &selection.population
             && !self.populations.iter().any(|p| p.name == *name)
@@ -69,6 +72,9 @@ impl Circuit {
                     place.cmpge(min).all() && place.cmple(max).all()
                 })
         });
+        if ids.is_some() {
+            self.check_ids(&nodes)?;
+        }
         if let Some((count, seed)) = selection.sample {
             // Nodes without a morphology would waste the sample.
             nodes.retain(|node| {
@@ -78,6 +84,30 @@ impl Circuit {
             sample(&mut nodes, count, seed);
         }
         Ok(nodes)
+    }
+
+    /// Whether each id is of a single population, of what has a morphology: virtual nodes beside real ones are none that
+    /// somebody means.
+    fn check_ids(&self, nodes: &[NodeRef]) -> Result<(), CircuitError> {
+        let mut of_id: HashMap<u64, u32> = HashMap::new();
+        for node in nodes {
+            let population = &self.populations[node.population as usize];
+            let row = node.row as usize;
+            if population.templates[row].is_none() {
+                continue;
+            }
+            let id = population.ids[row];
+            let first = *of_id.entry(id).or_insert(node.population);
+            if first != node.population {
+                let names = [first, node.population].map(|p| &self.populations[p as usize].name);
+                let fault = Fault::AmbiguousId {
+                    id,
+                    populations: names.map(String::clone),
+                };
+                return Err(CircuitError::of_file(&self.file, fault));
+            }
+        }
+        Ok(())
     }
 
     /// All nodes.

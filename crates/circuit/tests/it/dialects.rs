@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use hdf5_pure::{FileBuilder, GroupBuilder};
-use neurotess_circuit::{Circuit, Population};
+use neurotess_circuit::{Circuit, Population, Selection};
 use tempfile::TempDir;
 
 const CELL: &str = "1 1 0 0 0 5 -1\n2 3 9 0 0 1 1\n3 3 30 0 0 1 2\n";
@@ -334,5 +334,38 @@ fn a_simulation_without_a_circuit_is_of_the_one_beside_it() {
     assert!(
         error.contains("circuit_config.json: cannot be read"),
         "{error}"
+    );
+}
+
+#[neurotess_testing::test]
+fn ids_of_several_populations_are_told_apart() {
+    let place: Group = |group| table(group, "positions", 3, &[0.0, 0.0, 0.0, 9.0, 0.0, 0.0]);
+    let mut circuit = open(&folder(SWC, TYPES, &[100, 100], &[place]));
+    let mut other = circuit.populations[0].clone();
+    other.name = "q".into();
+    circuit.populations.push(other);
+    let of = |ids: Option<Vec<(u64, u64)>>, population: Option<&str>| Selection {
+        ids,
+        population: population.map(str::to_owned),
+        ..Selection::default()
+    };
+    let count = |circuit: &Circuit, selection: &Selection| {
+        circuit.select(selection).map(|nodes| nodes.len())
+    };
+    assert_eq!(count(&circuit, &of(None, None)).expect("all"), 4);
+    assert_eq!(
+        count(&circuit, &of(Some(vec![(1, 1)]), Some("q"))).expect("one"),
+        1
+    );
+    let error = circuit
+        .select(&of(Some(vec![(1, 5)]), None))
+        .expect_err("which?");
+    let expected = "populations 'p' and 'q' both have a node 1: name the population, too";
+    assert!(error.to_string().contains(expected), "{error}");
+    // Nodes without a morphology are none that somebody means.
+    circuit.populations[1].templates = vec![None; 2];
+    assert_eq!(
+        count(&circuit, &of(Some(vec![(1, 1)]), None)).expect("both"),
+        2
     );
 }
