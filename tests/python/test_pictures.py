@@ -345,6 +345,21 @@ def test_views_show_times(circuit_folder: Path) -> None:
     view.close()
 
 
+def test_cells_meshes_and_circuits_show_themselves(cell: nt.Morphology, circuit_folder: Path) -> None:
+    mesh, circuit = nt.mesh(cell, level=1), nt.Circuit(circuit_folder)
+    named = nt.Morphology.from_table(cell.to_table(), name="<b>")
+    for shown, told in [
+        (cell, ["<th", "100</td>", "µm</td>", "axon"]),
+        (named, ["&lt;b&gt;"]),
+        (mesh, ["triangles", f"{len(mesh.faces):,}", ">yes<"]),
+        (circuit, [circuit.populations[0], "nodes"]),
+    ]:
+        text = shown._repr_html_()
+        assert text.count("data:image/png;base64,") == 1 and "<b></b>" not in text
+        for part in told:
+            assert part in text, part
+
+
 def test_surfaces_are_drawn_alone(cell: nt.Morphology) -> None:
     from types import SimpleNamespace
 

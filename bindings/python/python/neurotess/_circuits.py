@@ -281,6 +281,11 @@ class Circuit(DrawnCircuit):
     def __reduce__(self) -> tuple[type[Circuit], tuple[str]]:
         return type(self), (self._path,)
 
+    def _repr_html_(self) -> str:
+        from ._html import of_circuit
+
+        return of_circuit(self)
+
     def __repr__(self) -> str:
         return f"<Circuit {self.file!r}: {len(self)} nodes>"
 

@@ -363,6 +363,11 @@ class Mesh:
         told = self.report, tuple(self.warnings), self.name, self.cell, self.placement, self._own
         return type(self), (self._surface, *told)
 
+    def _repr_html_(self) -> str:
+        from ._html import of_mesh
+
+        return of_mesh(self)
+
     def __repr__(self) -> str:
         count = len(self.faces) + len(self.quads)
         closed = {True: ", closed", False: ", not closed", None: ""}[self.report.get("closed")]

@@ -336,6 +336,11 @@ class Morphology:
     def __reduce__(self) -> tuple[type[Morphology], tuple[object, ...]]:
         return type(self), (self._cell, self.edits, self.id, self.connectors)
 
+    def _repr_html_(self) -> str:
+        from ._html import of_cell
+
+        return of_cell(self)
+
     def __repr__(self) -> str:
         neurites = len(self.neurites)
         return f"<Morphology {self.name!r}: {len(self)} points, {neurites} neurites>"
