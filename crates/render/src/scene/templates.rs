@@ -9,7 +9,10 @@ use wgpu::util::DeviceExt;
 use crate::gpu::buffers::{group_layout, storage};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::scene::TemplateId;
+
+/// Index of a template among those of a [`Templates`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TemplateId(pub u32);
 
 /// Number of patches in a cluster, which share a bounding sphere: the size of a workgroup.
 pub(crate) const CLUSTER: usize = 64;
