@@ -5,11 +5,16 @@
 //! templates.
 
 pub(crate) mod color;
+#[cfg(feature = "gpu")]
 mod instances;
 mod placement;
+#[cfg(feature = "gpu")]
 pub(crate) mod templates;
 
+#[cfg(feature = "gpu")]
 pub(crate) use instances::check_placement;
+#[cfg(feature = "gpu")]
 pub use instances::{Instance, Scene, SceneError};
 pub use placement::Placement;
+#[cfg(feature = "gpu")]
 pub use templates::TemplateId;

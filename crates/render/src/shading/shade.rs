@@ -9,6 +9,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::parallel::side_by_side;
 use crate::gpu::shader;
 use crate::scene::color::{CATEGORY_BIT, ColorTable, Rgb, is_dark, linear, luminance};
+use crate::shading::least_width::{CROWD, usual_least_width};
 use crate::sources::{SourceKey, VertexSource};
 use crate::view::frame::{Frame, Tile};
 
@@ -78,16 +79,13 @@ pub enum Light {
 }
 
 impl Look {
-    /// The least width (pixels) of neurites that pictures of so many neurons begin with: nine of ten places of a thin
-    /// axon then have a contrast of 3.3 : 1 or more to white, half of them 5.4 : 1, and 1.9 and 3 : 1 where they are as
-    /// wide as they are. None in a crowd: 200 cells of a circuit hide one another, while faint axons show how dense
-    /// they are, and let thick dendrites through.
+    /// [`usual_least_width`](crate::usual_least_width).
     pub fn usual_least_width(neurons: usize) -> f32 {
-        if neurons <= Self::CROWD { 1.5 } else { 0.0 }
+        usual_least_width(neurons)
     }
 
     /// The most neurons that [`Look::usual_least_width`] takes for single ones.
-    pub const CROWD: usize = 50;
+    pub const CROWD: usize = CROWD;
 
     /// The shorter side (pixels) of pictures that [`Look::width_at`] leaves widths as they are in.
     pub const REFERENCE_SIDE: f32 = 960.0;
