@@ -4,6 +4,8 @@
 //! it branches from included; the way from the soma to a neurite's first point is not. Sums are
 //! `f64`, in the order of the points. Negative radii count as zero.
 
+mod rows;
+
 use serde::Serialize;
 
 use crate::frustum::{distance, frustum_area, frustum_volume};
