@@ -60,6 +60,20 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-color",
         ],
     ),
+    (
+        "neurotess-wasm",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-mesh",
+            "neurotess-generate",
+            "neurotess-refine",
+            "neurotess-render",
+            "neurotess-color",
+            "neurotess-plot",
+            "neurotess-web",
+        ],
+    ),
     ("neurotess-output", &[]),
     ("neurotess-plot", &["neurotess-morphology"]),
     (

@@ -7,7 +7,8 @@ import { LEVELS, read, restore, stateOf } from './link.js';
 import { Measuring, described } from './measuring.js';
 import { Loop } from './loop.js';
 import { listen } from './pointer.js';
-import { ply, save, surface } from './saving.js';
+import { ply, surface } from './saving.js';
+import { save } from './files.js';
 import { drawn } from './picture.js';
 import { Scene } from './scene.js';
 import { STEPS, WebGpuRenderer } from './webgpu.js';
@@ -30,19 +31,23 @@ export class App {
   /** @param {{ shaders: any, cells: any, bytes: ArrayBuffer, first: number }} page */
   constructor({ shaders, cells, bytes, first }) {
     this.shaders = shaders;
-    this.scene = new Scene(cells, bytes, first, shaders.numbers);
-    this.colors = new Colors(this.scene);
-    this.camera = new Camera(this.scene.spheres);
     this.canvas = /** @type {HTMLCanvasElement} */ (byId('canvas'));
     this.message = byId('message');
     this.background = /** @type {'own' | 'system' | 'light' | 'dark'} */ (cells.background ? 'own' : 'system');
+    this.scene = new Scene(cells, bytes, first, shaders.numbers);
+    this.colors = new Colors(this.scene);
+    this.camera = new Camera(this.scene.spheres);
     this.measuring = new Measuring(this.scene, (text) => this.say(text));
+    /** What was hidden before the last click on the legend. @type {number[]} */
+    this.hiddenBefore = [];
+    /** @type {WebGpuRenderer | WebGlRenderer | undefined} */
+    this.renderer = undefined;
     this.hovered = 0;
     /** Pixels of the canvas for each of the page. */
     this.ratio = 1;
-    /** What was hidden before the last click on the legend. @type {number[]} */
-    this.hiddenBefore = [];
     this.system = matchMedia('(prefers-color-scheme: dark)');
+    /** A page in another one has no address of its own. */
+    this.hasAddress = location.protocol !== 'about:';
   }
 
   /** Opens a renderer: WebGPU, or else WebGL 2. */
@@ -69,18 +74,56 @@ export class App {
     const steps = renderer instanceof WebGpuRenderer ? STEPS : 2;
     this.loop = new Loop((how) => this.draw(how), () => /** @type {any} */ (this.renderer).done(), steps);
     this.say(said);
+    /** @type {HTMLDetailsElement} */ (byId('panel')).open = innerWidth > 760;
+    byId('copy').hidden = !this.hasAddress;
     this.makePanel();
     this.camera.fit(this.aspect(), this.covered());
     this.restore();
     this.recolor();
     this.watch();
-    this.loop.change();
+    await this.show(begin);
+    await this.completed;
+  }
+
+  /** Draws what is there already, then all. @param {number} begin when it began (ms) */
+  async show(begin) {
+    const { renderer } = this;
+    if (!renderer) return;
+    this.loop?.change();
     this.opened = performance.now() - begin;
     await new Promise((resolve) => setTimeout(resolve));
     await renderer.done();
     this.shown = performance.now() - begin;
-    await renderer.complete();
-    this.loop.refresh();
+    this.completed = renderer.complete().then(() => this.loop?.refresh());
+  }
+
+  /**
+   * Shows other cells, in the same way. What is compiled for the device stays: browsers know equal pipelines of a device.
+   * @param {string} text of a page's cells
+   */
+  async replace(text) {
+    const begin = performance.now(), { renderer: before } = this;
+    const [cells, bytes, first] = await /** @type {any} */ (window).neurotess.unpacked(text);
+    const scene = new Scene(cells, bytes, first, this.shaders.numbers);
+    const renderer = await before?.replaced(scene);
+    if (!renderer) throw new Error('nothing can be drawn here');
+    this.canvas.setAttribute('aria-label', (this.canvas.getAttribute('aria-label') ?? '').replace(this.scene.data.title, () => cells.title));
+    this.scene = scene;
+    this.colors = new Colors(scene);
+    this.camera = new Camera(scene.spheres);
+    this.measuring = new Measuring(scene, (text) => this.say(text));
+    this.hiddenBefore = [];
+    this.renderer = renderer;
+    this.playing = false;
+    document.title = cells.title;
+    for (const heading of document.querySelectorAll('h1')) heading.textContent = cells.title;
+    this.showBackground();
+    this.makePanel();
+    this.measure(false);
+    this.tip(null, 0, 0);
+    this.camera.fit(this.aspect(), this.covered());
+    await this.show(begin);
+    before?.destroy();
   }
 
   /** @param {string} text */
@@ -177,8 +220,6 @@ export class App {
 
   makePanel() {
     const { colors, scene } = this;
-    const panel = /** @type {HTMLDetailsElement} */ (byId('panel'));
-    panel.open = innerWidth > 760;
     const choose = (/** @type {string} */ id, /** @type {string[][]} */ options) =>
       byId(id).replaceChildren(...options.map(([value, text]) => new Option(text, value)));
     choose('scheme', colors.schemes.map(({ id, label }) => [id, label]));
@@ -268,7 +309,7 @@ export class App {
 
   /** Listens to input. */
   watch() {
-    const { camera, canvas } = this;
+    const { canvas } = this;
     const change = () => this.loop?.change();
     new ResizeObserver(() => this.resize() && change()).observe(canvas);
     this.system.onchange = () => {
@@ -277,9 +318,9 @@ export class App {
     };
     addEventListener('hashchange', () => location.hash !== this.link && (this.restore(), this.recolor(), change()));
     listen(canvas, {
-      turn: (right, up) => { camera.turn(right, up); change(); },
-      pan: (x, y) => { camera.pan(x, y, canvas.clientHeight); change(); },
-      zoom: (factor, x, y) => { camera.zoom(factor, x - canvas.clientWidth / 2, y - canvas.clientHeight / 2, canvas.clientHeight); change(); },
+      turn: (right, up) => { this.camera.turn(right, up); change(); },
+      pan: (x, y) => { this.camera.pan(x, y, canvas.clientHeight); change(); },
+      zoom: (factor, x, y) => { this.camera.zoom(factor, x - canvas.clientWidth / 2, y - canvas.clientHeight / 2, canvas.clientHeight); change(); },
       hover: (x, y) => this.hover(x, y),
       leave: () => this.tip(null, 0, 0),
       click: (x, y) => this.click(x, y),
@@ -359,10 +400,10 @@ export class App {
     return true;
   }
 
-  /** Begins or ends measuring. */
-  measure() {
+  /** Begins or ends measuring. @param {boolean} [active] */
+  measure(active = !this.measuring.active) {
     const { measuring } = this;
-    measuring.toggle();
+    if (active !== measuring.active) measuring.toggle();
     byId('measure').setAttribute('aria-pressed', String(measuring.active));
     this.canvas.classList.toggle('measuring', measuring.active);
     measuring.draw(byId('overlay'), this.camera);
@@ -418,6 +459,7 @@ export class App {
 
   /** Puts what is shown into the address. */
   writeLink() {
+    if (!this.hasAddress) return;
     this.link = stateOf(this);
     if (location.hash !== this.link) location.replace(this.link);
   }

@@ -1,6 +1,5 @@
 // Unpacks the host and the cells of the page and starts the host. See page.rs.
-const unpacked = async (id) => {
-  const text = document.getElementById(id).textContent;
+const unpacked = async (text) => {
   const values = new Uint8Array(128);
   [...'{signs}'].forEach((sign, k) => { values[sign.charCodeAt(0)] = k; });
   const bytes = new Uint8Array(text.length / 5 * 4), view = new DataView(bytes.buffer);
@@ -16,13 +15,14 @@ const unpacked = async (id) => {
 };
 (async () => {
   try {
-    const [shaders, host, start] = await unpacked('host');
-    const [cells, bytes, first] = await unpacked('cells');
+    const packed = (id) => unpacked(document.getElementById(id).textContent);
+    const [shaders, host, start] = await packed('host');
+    const [cells, bytes, first] = await packed('cells');
     const style = document.createElement('style');
     style.textContent = shaders.style;
     document.head.append(style);
-    document.body.innerHTML = shaders.body.replaceAll('{title}', document.querySelector('title').innerHTML.replaceAll('"', '&quot;'));
-    window.neurotess = { shaders, cells, bytes, first };
+    document.body.innerHTML = shaders.body.replaceAll('{name}', document.querySelector('title').innerHTML.replaceAll('"', '&quot;'));
+    window.neurotess = { shaders, cells, bytes, first, unpacked };
     const script = document.createElement('script');
     script.type = 'module';
     script.textContent = new TextDecoder().decode(new Uint8Array(host, start));

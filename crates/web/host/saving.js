@@ -1,4 +1,4 @@
-// Saves: the surface as a PLY file, made of the card's own vertices, and files in general.
+// The surface as a PLY file, made of the card's own vertices.
 
 import { quads } from './selection.js';
 import { ranges } from './ranges.js';
@@ -125,13 +125,4 @@ export function ply({ vertices, sections, triangles }) {
     for (let k = 0; k < 3; k++) body.setUint32(at + 1 + 4 * k, triangles[3 * f + k], true);
   }
   return new Blob([header, body], { type: 'application/octet-stream' });
-}
-
-/** Hands a file to the reader. @param {Blob} blob @param {string} name */
-export function save(blob, name) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }

@@ -30,6 +30,17 @@ export class WebGlRenderer {
     return new WebGlRenderer(gl, canvas, scene, shaders);
   }
 
+  /** The same for other cells. @param {import('./scene.js').Scene} scene @returns {Promise<WebGlRenderer>} */
+  async replaced(scene) {
+    return new WebGlRenderer(this.gl, this.canvas, scene, this.shaders);
+  }
+
+  /** Frees what the device holds of the cells. */
+  destroy() {
+    this.gl.deleteTexture(this.packed);
+    for (const { buffer } of this.stretches) this.gl.deleteBuffer(buffer);
+  }
+
   /** @param {WebGL2RenderingContext} gl @param {HTMLCanvasElement} canvas @param {import('./scene.js').Scene} scene @param {any} shaders */
   constructor(gl, canvas, scene, shaders) {
     this.gl = gl;

@@ -77,6 +77,19 @@ export class WebGpuRenderer {
     this.flat = [];
   }
 
+  /** The same for other cells, on the same device. @param {import('./scene.js').Scene} scene @returns {Promise<WebGpuRenderer>} */
+  async replaced(scene) {
+    const renderer = new WebGpuRenderer(this.device, this.canvas, scene, this.shaders);
+    await renderer.compile();
+    return renderer;
+  }
+
+  /** Frees what the device holds of the cells. */
+  destroy() {
+    for (const targets of this.targets) targets.destroy();
+    for (const made of [...Object.values(this.selection.buffers), this.shade, this.table]) made.destroy();
+  }
+
   /** Compiles what a picture at level 1 needs, which is drawn until all else is there. */
   async compile() {
     const flat = this.pipelines('draw', ['vertex', 'fragment'], FORMATS, this.shaders.numbers.SAMPLES, [0]);

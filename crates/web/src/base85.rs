@@ -22,11 +22,12 @@ pub(crate) fn base85(bytes: &[u8]) -> String {
 }
 
 /// The signs in their order, for the page that reads them.
+#[cfg(feature = "host")]
 pub(crate) fn signs() -> &'static str {
     str::from_utf8(SIGNS).expect("they are ASCII")
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "host"))]
 mod tests {
     use super::*;
 

@@ -5,15 +5,21 @@
 
 use crate::minified;
 
-/// A module of the host.
+/// A module of a folder.
 macro_rules! module {
     ($name:literal) => {
-        ($name, include_str!(concat!("../host/", $name, ".js")))
+        module!("host", $name)
+    };
+    ($folder:literal, $name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../", $folder, "/", $name, ".js")),
+        )
     };
 }
 
 /// The modules, each after those that it imports from.
-const MODULES: [(&str, &str); 21] = [
+const MODULES: [(&str, &str); 22] = [
     module!("vectors"),
     module!("bytes"),
     module!("scene"),
@@ -28,6 +34,7 @@ const MODULES: [(&str, &str); 21] = [
     module!("shadows"),
     module!("webgl"),
     module!("saving"),
+    module!("files"),
     module!("link"),
     module!("measuring"),
     module!("legend"),
@@ -37,12 +44,27 @@ const MODULES: [(&str, &str); 21] = [
     module!("app"),
 ];
 
-/// The script of all modules.
+/// Those of the page that takes tracings.
+const DROPPING: [(&str, &str); 4] = [
+    module!("files"),
+    module!("drop", "core"),
+    module!("drop", "frame"),
+    module!("drop", "page"),
+];
+
+/// The script of all modules of the host.
 pub(crate) fn host_script() -> String {
-    MODULES
-        .iter()
-        .map(|(name, text)| module(name, text))
-        .collect()
+    script(&MODULES)
+}
+
+/// The script of the page that takes tracings.
+pub(crate) fn dropping_script() -> String {
+    script(&DROPPING)
+}
+
+fn script(modules: &[(&str, &str)]) -> String {
+    let modules = modules.iter();
+    modules.map(|(name, text)| module(name, text)).collect()
 }
 
 /// A module as a function.
@@ -69,8 +91,9 @@ fn module(name: &str, text: &str) -> String {
 fn imported(import: &str) -> String {
     let parts = import.strip_suffix(".js';");
     let (names, from) = parts
-        .and_then(|parts| parts.split_once("from './"))
+        .and_then(|parts| parts.split_once("from '"))
         .expect("an import of the host is one line, of names in one of its modules");
+    let (_, from) = from.rsplit_once('/').unwrap_or(("", from));
     format!("const{names}=module_{from};")
 }
 
@@ -97,12 +120,14 @@ mod tests {
 
     #[test]
     fn modules_come_after_those_that_they_import() {
-        for (place, (name, text)) in MODULES.iter().enumerate() {
-            for line in text.lines().filter(|line| line.starts_with("import ")) {
-                let from = MODULES
-                    .iter()
-                    .position(|(other, _)| line.contains(&format!("'./{other}.js'")));
-                assert!(from.is_some_and(|from| from < place), "{name}: {line}");
+        for modules in [&MODULES[..], &DROPPING] {
+            for (place, (name, text)) in modules.iter().enumerate() {
+                for line in text.lines().filter(|line| line.starts_with("import ")) {
+                    let from = modules
+                        .iter()
+                        .position(|(other, _)| line.contains(&format!("/{other}.js'")));
+                    assert!(from.is_some_and(|from| from < place), "{name}: {line}");
+                }
             }
         }
     }

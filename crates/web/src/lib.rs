@@ -15,25 +15,43 @@
 mod arrays;
 mod base85;
 mod cell;
+mod content;
+#[cfg(feature = "host")]
+mod dropping;
 mod error;
+#[cfg(feature = "host")]
 mod glsl;
+#[cfg(feature = "host")]
 mod host_script;
+#[cfg(feature = "host")]
 mod layout;
 mod markers;
+#[cfg(feature = "host")]
 mod minified;
+#[cfg(feature = "host")]
 mod page;
 mod recording;
 mod schemes;
+#[cfg(feature = "host")]
 mod shaders;
 mod shared;
+#[cfg(feature = "host")]
 mod shortened;
+#[cfg(feature = "host")]
 mod texture_source;
 
 pub use cell::{PageCell, packed_parts};
+pub use content::{CellsText, MAX_KEYS, PageOptions};
+#[cfg(feature = "host")]
+pub use dropping::dropping_page;
 pub use error::WebError;
 pub use markers::PageMarkers;
-pub use page::{MAX_PAGE_BYTES, Page, PageOptions, page};
+#[cfg(feature = "host")]
+pub use page::{MAX_PAGE_BYTES, Page, page};
 pub use recording::PageRecording;
 pub use schemes::PageScheme;
+#[cfg(feature = "host")]
 pub use shaders::modules;
-pub use shared::{shared_page, usual_title};
+#[cfg(feature = "host")]
+pub use shared::shared_page;
+pub use shared::{shared_cells, usual_title};

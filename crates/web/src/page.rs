@@ -5,60 +5,18 @@
 //! shaders, host/*.js ─▶ JSON and text ──┴─deflate, base 85─▶ page.html
 //! ```
 
-use std::io::Write;
-
-use flate2::Compression;
-use flate2::write::DeflateEncoder;
-use neurotess_color::OwnColors;
-use neurotess_render::color::{ColorMap, Palette, Rgb};
 use serde::Serialize;
 
-use crate::arrays::Arrays;
-use crate::base85::{base85, signs};
-use crate::cell::{CellData, MAX_PATCHES, PageCell};
+use crate::base85::signs;
+use crate::cell::PageCell;
+use crate::content::{CellsText, PageOptions, cells_text, packed_text};
 use crate::error::WebError;
 use crate::host_script::host_script;
-use crate::markers::{MarkerData, PageMarkers};
+use crate::markers::PageMarkers;
 use crate::minified;
-use crate::recording::{PageRecording, RecordingData};
-use crate::schemes::{ColorMapData, PageScheme, PaletteData, SchemeData, color_maps, palettes};
+use crate::recording::PageRecording;
+use crate::schemes::PageScheme;
 use crate::shaders::PageShaders;
-
-/// What a page shows at first; all of it can be changed there.
-#[derive(Clone, Debug)]
-pub struct PageOptions {
-    /// Its title.
-    pub title: String,
-    /// The background; none: as the reader's system is set, light or dark.
-    pub background: Option<Rgb>,
-    /// Colors of types and categories.
-    pub palette: Palette,
-    /// Colors of one's own, over those of the palette.
-    pub own_colors: OwnColors,
-    /// Colors of numbers.
-    pub color_map: ColorMap,
-    /// Index of the scheme that it begins with; none: the recording.
-    pub scheme: Option<usize>,
-    /// Least width (pixels) of neurites.
-    pub least_width: f32,
-}
-
-/// All that a page's host reads of its cells.
-#[derive(Serialize)]
-struct PageData {
-    title: String,
-    background: Option<Rgb>,
-    palette: &'static str,
-    color_map: &'static str,
-    scheme: Option<usize>,
-    least_width: f32,
-    cells: Vec<CellData>,
-    schemes: Vec<SchemeData>,
-    recording: Option<RecordingData>,
-    markers: Option<MarkerData>,
-    palettes: Vec<PaletteData>,
-    color_maps: Vec<ColorMapData>,
-}
 
 /// The same in all pages.
 #[derive(Serialize)]
@@ -83,12 +41,6 @@ pub struct Page {
 /// Pages are larger only if somebody insists: mail takes them, and browsers open them at once.
 pub const MAX_PAGE_BYTES: usize = 2_000_000;
 
-/// Slower than what is usual for the best, and a hundredth smaller.
-const BEST: u32 = 10;
-
-/// Color keys are below: they and the kind of a patch fit an f32 (shaders/even.wgsl).
-const MAX_KEYS: usize = 1 << 20;
-
 /// Makes a page. `schemes` color all cells in their order.
 ///
 /// # Errors
@@ -100,83 +52,56 @@ pub fn page(
     markers: &PageMarkers,
     options: &PageOptions,
 ) -> Result<Page, WebError> {
-    let points: usize = cells.iter().map(|c| c.cell.mesh.tracing.len()).sum();
-    if cells.iter().all(|cell| cell.cell.mesh.patches.is_empty()) {
-        return Err(WebError::Empty);
-    }
-    if points > MAX_KEYS {
-        let most = MAX_KEYS;
-        return Err(WebError::TooManyPoints { points, most });
-    }
-    let mut arrays = Arrays::default();
-    let mut first_key = 0;
-    let cells: Vec<CellData> = cells
-        .iter()
-        .map(|cell| {
-            let data = CellData::new(cell, first_key, &mut arrays);
-            first_key += cell.cell.mesh.tracing.len();
-            data
+    let cells = cells_text(cells, schemes, recording, markers, options)?;
+    Page::of(&options.title, &cells)
+}
+
+impl Page {
+    /// The page of cells that are packed.
+    ///
+    /// # Errors
+    /// A shader cannot be translated: a bug.
+    pub fn of(title: &str, cells: &CellsText) -> Result<Self, WebError> {
+        let form = page_form()?;
+        let host_bytes = form.len() - TITLE.len() - CELLS.len();
+        Ok(Self {
+            html: form
+                .replace(CELLS, &cells.text)
+                .replace(TITLE, &escaped(title)),
+            host_bytes,
+            points: cells.points,
         })
-        .collect();
-    let patches: usize = cells.iter().map(CellData::slots).sum();
-    if patches > MAX_PATCHES {
-        let most = MAX_PATCHES;
-        return Err(WebError::TooManyPatches { patches, most });
     }
-    let schemes = schemes.iter();
-    let data = PageData {
-        title: options.title.clone(),
-        background: options.background,
-        palette: options.palette.name(),
-        color_map: options.color_map.name(),
-        scheme: options.scheme,
-        least_width: options.least_width,
-        cells,
-        schemes: schemes
-            .map(|scheme| SchemeData::new(scheme, &options.own_colors, &mut arrays))
-            .collect(),
-        recording: recording.map(|recording| RecordingData::new(recording, &mut arrays)),
-        markers: MarkerData::new(markers, &mut arrays),
-        palettes: palettes(),
-        color_maps: color_maps(),
-    };
+}
+
+/// What a page may do: nothing that asks a server for anything.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
+/// What stands in a page's form for its title and its cells.
+pub(crate) const TITLE: &str = "{title}";
+pub(crate) const CELLS: &str = "{cells}";
+
+/// A page without title and cells: the host, and where the two go.
+pub(crate) fn page_form() -> Result<String, WebError> {
     let host = HostData {
         shaders: PageShaders::new()?,
         style: minified::css(include_str!("../host/page.css")),
         body: include_str!("../host/body.html"),
     };
-    let host = packed_text(&host, host_script().as_bytes());
-    let html = include_str!("../host/page.html")
-        .replace("{title}", &escaped(&options.title))
-        .replace(
-            "{loader}",
-            &minified::javascript(include_str!("../host/loader.js")),
-        )
-        .replace("{signs}", signs());
-    let host_bytes = html.len() + host.len();
-    let html = html
-        .replace("{host}", &host)
-        .replace("{cells}", &packed_text(&data, &arrays.bytes));
-    Ok(Page {
-        html,
-        host_bytes,
-        points,
-    })
+    Ok(written(
+        POLICY,
+        &packed_text(&host, host_script().as_bytes()),
+    ))
 }
 
-/// JSON with its length before it and bytes behind it, compressed.
-fn packed_text(json: &impl Serialize, bytes: &[u8]) -> String {
-    let mut json = serde_json::to_vec(json).expect("our structs have string keys only");
-    // What follows are numbers of 32 bits.
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::new(BEST));
-    let length = (json.len() as u32).to_le_bytes();
-    let written = [&length[..], &json, bytes].map(|part| encoder.write_all(part));
-    debug_assert!(written.iter().all(Result::is_ok));
-    let packed = encoder.finish().expect("memory takes all bytes");
-    // How many bytes there are: what follows the end of a stream is an error.
-    let length = (packed.len() as u32).to_be_bytes();
-    base85(&[&length[..], &packed].concat())
+/// A page with this policy and host, without title and cells.
+pub(crate) fn written(policy: &str, host: &str) -> String {
+    let loader = minified::javascript(include_str!("../host/loader.js"));
+    include_str!("../host/page.html")
+        .replace("{policy}", policy)
+        .replace("{loader}", &loader)
+        .replace("{signs}", signs())
+        .replace("{host}", host)
 }
 
 /// Text as HTML shows it.

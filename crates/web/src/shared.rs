@@ -3,9 +3,11 @@
 use neurotess_color::{Cell, ColorBy, ColorScheme, Coloring, coloring};
 
 use crate::cell::PageCell;
+use crate::content::{CellsText, PageOptions, cells_text};
 use crate::error::WebError;
 use crate::markers::PageMarkers;
-use crate::page::{Page, PageOptions, page};
+#[cfg(feature = "host")]
+use crate::page::Page;
 use crate::recording::PageRecording;
 use crate::schemes::PageScheme;
 
@@ -25,7 +27,8 @@ const KINDS: [ColorBy; 7] = [
 /// `options.scheme` is not used.
 ///
 /// # Errors
-/// As [`page`].
+/// There is nothing to show, or too much.
+#[cfg(feature = "host")]
 pub fn shared_page(
     cells: &[PageCell<'_>],
     scheme: &ColorScheme,
@@ -34,6 +37,22 @@ pub fn shared_page(
     markers: &PageMarkers,
     options: &PageOptions,
 ) -> Result<Page, WebError> {
+    let packed = shared_cells(cells, scheme, first, recording, markers, options)?;
+    Page::of(&options.title, &packed)
+}
+
+/// The cells of [`shared_page`], for a page whose host is there.
+///
+/// # Errors
+/// There is nothing to show, or too much.
+pub fn shared_cells(
+    cells: &[PageCell<'_>],
+    scheme: &ColorScheme,
+    first: Option<ColorBy>,
+    recording: Option<&PageRecording>,
+    markers: &PageMarkers,
+    options: &PageOptions,
+) -> Result<CellsText, WebError> {
     // One neuron has one color.
     let kinds = &KINDS[..KINDS.len() - usize::from(cells.len() == 1)];
     let colored: Vec<Cell<'_>> = cells.iter().map(|page| page.cell).collect();
@@ -55,7 +74,7 @@ pub fn shared_page(
         scheme: begins,
         ..options.clone()
     };
-    page(cells, &schemes, recording, markers, &options)
+    cells_text(cells, &schemes, recording, markers, &options)
 }
 
 /// The title of a page of cells with these names: up to three of them, or how many there are.

@@ -133,6 +133,31 @@ impl Browser {
         answer["result"]["value"].clone()
     }
 
+    /// Chooses a file, as a dialog does.
+    pub(crate) fn choose(&mut self, input: &str, file: &Path) {
+        let document = self.ask("DOM.getDocument", &json!({}));
+        let of = json!({"nodeId": document["root"]["nodeId"], "selector": input});
+        let node = self.ask("DOM.querySelector", &of)["nodeId"].clone();
+        let files = json!({"nodeId": node, "files": [file]});
+        self.ask("DOM.setFileInputFiles", &files);
+    }
+
+    /// Drags a file to a place of the page (pixels), and drops it there.
+    pub(crate) fn drop_file(&mut self, [x, y]: [u32; 2], file: &Path) {
+        let data = json!({"items": [], "files": [file], "dragOperationsMask": 1});
+        for kind in ["dragEnter", "dragOver", "drop"] {
+            let event = json!({"type": kind, "x": x, "y": y, "data": data});
+            self.ask("Input.dispatchDragEvent", &event);
+        }
+    }
+
+    /// Presses a key as a keyboard does.
+    pub(crate) fn press(&mut self, key: &str) {
+        for kind in ["keyDown", "keyUp"] {
+            self.ask("Input.dispatchKeyEvent", &json!({"type": kind, "key": key, "code": key, "windowsVirtualKeyCode": if key == "Tab" { 9 } else { 13 }}));
+        }
+    }
+
     /// The answer to a command. What happens meanwhile is noted.
     fn ask(&mut self, method: &str, params: &Value) -> Value {
         self.asked += 1;
@@ -162,9 +187,12 @@ impl Browser {
             Some("Runtime.exceptionThrown") => &params["exceptionDetails"],
             Some("Network.requestWillBeSent") => {
                 let address = &params["request"]["url"];
-                let own = address
-                    .as_str()
-                    .is_some_and(|a| a.starts_with("file:") || a == "about:blank");
+                // A worker's script and a page in a page are of the page.
+                let is_own = |a: &str| {
+                    let own = ["file:", "blob:", "about:"];
+                    own.iter().any(|start| a.starts_with(start))
+                };
+                let own = address.as_str().is_some_and(is_own);
                 if own {
                     return;
                 }

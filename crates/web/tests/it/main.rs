@@ -3,6 +3,8 @@
 mod browser;
 mod browsing;
 mod contents;
+mod core;
+mod dropping;
 mod unpacked;
 mod written;
 
