@@ -29,6 +29,8 @@ mod soak;
 mod steps;
 mod tests;
 mod third_party;
+mod wasm;
+mod web;
 mod wheel;
 
 use std::process::ExitCode;
@@ -46,6 +48,7 @@ const USAGE: &str = "cargo xtask COMMAND
   python    the Python package's tests alone; with --full those beside other packages, too
   wheel     the Python package as a wheel in out/wheel, with all licenses, and a trial of it in a fresh
             environment; with --from-source also `pip install bindings/python/` (builds all again)
+  web       the page that takes tracings and meshes them in the browser: out/web/index.html, one file
   soak      property tests and fuzzers with new seeds, for MINUTES (10): more than 100,000 trees
   gpu-bundle
             a folder that tests and measures on a machine with graphics hardware and nothing but a driver:
@@ -59,7 +62,8 @@ const USAGE: &str = "cargo xtask COMMAND
   architecture
             who knows whom among crates, folders and files
   setup     a software Vulkan driver where there is none, a virtual display, and the Python environment
-            of the package's tests (where Python 3 is); with --full other programs that read our files
+            of the package's tests (where Python 3 is); with --full other programs that read our
+            files, Chromium, Valgrind and Rust's library for WebAssembly
   pictures  draw the README's pictures; with --golden those that tests compare with
 ";
 
@@ -78,6 +82,7 @@ fn main() -> ExitCode {
         Some("wheel") => {
             wheel::run_all(std::env::args().nth(2).as_deref() == Some("--from-source"))
         }
+        Some("web") => web::run_all(),
         Some("soak") => soak::run(std::env::args().nth(2).as_deref()),
         Some("gpu-bundle") => gpu::bundle::run(),
         // In the bundle, where run.sh calls it.

@@ -17,6 +17,7 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess", "synth,circuit"),
     ("neurotess", "render"),
     ("neurotess", "render,circuit"),
+    ("neurotess-web", ""),
     ("neurotess-cli", ""),
     ("neurotess-cli", "render"),
     ("neurotess-python", ""),
@@ -48,7 +49,7 @@ pub(crate) fn features(lane: Lane) -> anyhow::Result<String> {
 /// Packs every crate that is for others. What a package would build is not built again.
 pub(crate) fn package() -> anyhow::Result<String> {
     let pack = "package --workspace --exclude xtask --exclude neurotess-testing \
-                --exclude neurotess-testing-macros --exclude neurotess-python --no-verify --allow-dirty --locked \
+                --exclude neurotess-testing-macros --exclude neurotess-python --exclude neurotess-wasm --no-verify --allow-dirty --locked \
                 --target-dir target/features";
     run(&mut cargo(pack)).map(|()| "every crate packs".into())
 }

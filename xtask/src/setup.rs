@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::lane::Lane;
-use crate::{python, steps};
+use crate::{python, steps, wasm};
 
 /// Folders in which the Vulkan loader looks for drivers on Linux.
 const VULKAN_DRIVERS: &[&str] = &[
@@ -94,7 +94,11 @@ pub(crate) fn run(lane: Lane) -> anyhow::Result<String> {
         false => "this system has graphics of its own; the window's test runs on Linux only".into(),
     };
     let python = python::set_up(python::of_tests(lane))?;
-    Ok(format!("{python}; {graphics}"))
+    let web = match lane {
+        Lane::Full => format!("; {}", wasm::set_up()),
+        Lane::Quick => String::new(),
+    };
+    Ok(format!("{python}; {graphics}{web}"))
 }
 
 impl Installed {

@@ -6,7 +6,7 @@ use crate::counts::Counts;
 use crate::lane::Lane;
 use crate::programs;
 use crate::steps::{self, Steps, cargo, run_listening};
-use crate::{architecture, extension, harness, licenses, metadata, packages, setup};
+use crate::{architecture, extension, harness, licenses, metadata, packages, setup, web};
 
 /// Runs the command. The last lines tell what the steps took, which tests took longest, how many there were, which
 /// were skipped and why, and which failed.
@@ -49,6 +49,7 @@ fn all(lane: Lane, steps: &mut Steps) -> anyhow::Result<Counts> {
     steps.step("features", || packages::features(lane))?;
     if lane == Lane::Full {
         steps.step("package", packages::package)?;
+        steps.step("web", web::check)?;
     }
     let mut built = Vec::new();
     steps.step("build", || {

@@ -1,5 +1,5 @@
-//! The licenses of all packages that are compiled into the Python package's module, as one text. Most of them
-//! ask that their text goes along with the program.
+//! The licenses of all packages that are compiled into a module of ours, as one text. Most of them ask that their text
+//! goes along with the program.
 //!
 //! Packages and licenses are Cargo's; the texts are the files that each package holds. Where a package holds
 //! none and offers the Apache License 2.0, whose text is the same for all, that stands for it.
@@ -14,8 +14,21 @@ use anyhow::{Context, bail};
 use crate::metadata::{self, Package};
 use crate::steps::{cargo, output, root};
 
-/// The package that everything is compiled into.
-const MODULE: &str = "neurotess-python";
+/// What others' packages are compiled into.
+pub(crate) struct Module {
+    pub(crate) package: &'static str,
+    /// What it is compiled for; none: this platform.
+    pub(crate) target: Option<&'static str>,
+    /// What it is, at the beginning of a sentence.
+    pub(crate) what: &'static str,
+}
+
+/// The Python package's.
+pub(crate) const PYTHON: Module = Module {
+    package: "neurotess-python",
+    target: None,
+    what: "Its extension module",
+};
 
 /// What is compiled in although Cargo does not list it.
 const STANDARD_LIBRARY: &str =
@@ -27,13 +40,13 @@ pub(crate) struct Licenses {
     pub(crate) count: usize,
 }
 
-/// Collects the licenses for this platform.
+/// Collects the licenses.
 ///
 /// # Errors
 /// Where a package has no text of its own and no license whose text is known.
-pub(crate) fn collect() -> anyhow::Result<Licenses> {
+pub(crate) fn collect(module: &Module) -> anyhow::Result<Licenses> {
     let packages = metadata::read()?;
-    let compiled = compiled_in()?;
+    let compiled = compiled_in(module)?;
     let is_in = |p: &&Package| compiled.contains(&(p.name.clone(), p.version.clone()));
     let others: Vec<&Package> = packages.iter().filter(|p| !p.ours).filter(is_in).collect();
     let apache = fs::read_to_string(root().join("LICENSE-APACHE")).context("LICENSE-APACHE")?;
@@ -65,8 +78,9 @@ pub(crate) fn collect() -> anyhow::Result<Licenses> {
             .for_each(|text| add(text, name.clone()));
     }
     let mut text = format!(
-        "neurotess is under MIT OR Apache-2.0. Its extension module also holds these packages:\n\n\
-         {list}{STANDARD_LIBRARY}\n\nTheir licenses follow.\n"
+        "neurotess is under MIT OR Apache-2.0. {} also holds these packages:\n\n\
+         {list}{STANDARD_LIBRARY}\n\nTheir licenses follow.\n",
+        module.what
     );
     for (words, packages) in texts.values() {
         let names: Vec<&str> = packages.iter().map(String::as_str).collect();
@@ -84,11 +98,17 @@ pub(crate) fn collect() -> anyhow::Result<Licenses> {
     })
 }
 
-/// Names and versions of what is compiled into the module for this platform, without macros, which run at build
-/// time.
-fn compiled_in() -> anyhow::Result<BTreeSet<(String, String)>> {
+/// Names and versions of what is compiled into a module, without macros, which run at build time.
+fn compiled_in(module: &Module) -> anyhow::Result<BTreeSet<(String, String)>> {
     let mut tree = cargo("tree --locked --edges normal,no-proc-macro --prefix none --format {p}");
-    let listed = output(tree.args(["--package", MODULE]))?;
+    tree.args(["--package", module.package]);
+    tree.args(
+        module
+            .target
+            .into_iter()
+            .flat_map(|target| ["--target", target]),
+    );
+    let listed = output(&mut tree)?;
     let named = |line: &str| -> Option<(String, String)> {
         let mut words = line.split_whitespace();
         let (name, version) = (words.next()?, words.next()?);
@@ -176,7 +196,7 @@ mod tests {
 
     #[test]
     fn all_that_is_compiled_in_is_named_with_its_text() {
-        let licenses = collect().expect("all packages have licenses");
+        let licenses = collect(&PYTHON).expect("all packages have licenses");
         assert!(licenses.count > 50, "{}", licenses.count);
         for name in [
             "\npyo3 0.",

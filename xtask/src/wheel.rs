@@ -47,7 +47,7 @@ pub(crate) fn run_all(from_source: bool) -> anyhow::Result<()> {
         bail!("wheels are made by Python 3.10 or newer with maturin, which could not be installed");
     };
     steps.step("licenses", || {
-        let licenses = third_party::collect()?;
+        let licenses = third_party::collect(&third_party::PYTHON)?;
         fs::write(root().join(LICENSES), &licenses.text).context(LICENSES)?;
         Ok(format!("of {} packages, in {LICENSES}", licenses.count))
     })?;
