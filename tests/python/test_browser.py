@@ -23,7 +23,7 @@ pytestmark = pytest.mark.full
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 SOURCE = """import neurotess as nt
-view = nt.View(nt.synth('pyramidal', seed=4, points=800), size=(500, 400))
+view = nt.View(nt.synth('pyramidal', seed=4, points=800), renderer='kernel', size=(500, 400))
 view.on_pick = lambda found: open('picked.txt', 'w').write(found['name'])
 view"""
 

@@ -135,3 +135,73 @@ def test_pages_too_large_for_mail_are_asked_for() -> None:
 def test_types_of_options_are_those_of_the_function() -> None:
     parameters = set(inspect.signature(nt.html).parameters) - {"what", "path"}
     assert parameters == set(nt.PageOptions.__annotations__)
+
+
+def framed(view: Any) -> str:
+    """The page in what a notebook shows."""
+    import html.parser
+
+    class Frame(html.parser.HTMLParser):
+        page = ""
+
+        def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+            assert tag == "iframe" and dict(attrs)["title"]
+            self.page = dict(attrs)["srcdoc"] or ""
+
+    frame = Frame()
+    frame.feed(view._repr_html_())
+    return frame.page
+
+
+def test_views_are_pages_that_the_browser_draws(cell: nt.Morphology, tmp_path: Path) -> None:
+    view = nt.View(cell, size=(640, 480), color_by="radius")
+    assert framed(view) == view.html == nt.html(cell, color_by="radius")
+    assert "width:640px" in view._repr_html_() and "kB, drawn by the browser" in repr(view)
+    out = view.save(tmp_path / "cell.html")
+    assert out.read_text(encoding="utf-8") == view.html
+    distances = cell.path_distances()
+    view = nt.View([cell], values=[distances], title="distance", unit="µm", renderer="browser")
+    assert view.html == nt.html([cell], values=[distances], values_title="distance", unit="µm")
+    # An iterator can be read once only.
+    assert nt.View(iter([cell])).html == nt.html([cell])
+    view.close()
+
+
+def test_views_that_pages_cannot_show_are_drawn_by_the_kernel(
+    cell: nt.Morphology, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from neurotess import _view
+
+    made: list[dict[str, Any]] = []
+    kernel = type(sys)("neurotess._kernel_view")
+    kernel.KernelView = lambda _what, **options: made.append(options)  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "neurotess._kernel_view", kernel)
+    nt.View(cell, renderer="kernel", size=(64, 48))
+    nt.View(cell, samples=4, color_by="radius")
+    monkeypatch.setattr(_view, "MOST_BYTES", 1000)
+    nt.View(cell)
+    assert made == [{"size": (64, 48)}, {"size": (800, 600), "samples": 4, "color_by": "radius"}, {"size": (800, 600)}]
+    # Who asks for it gets it.
+    assert len(nt.View(cell, renderer="browser").html) > 1000
+    with pytest.raises(ValueError, match="samples= is of views that the kernel draws"):
+        nt.View(cell, renderer="browser", samples=4)
+    with pytest.raises(ValueError, match="'browser' or 'kernel' is needed"):
+        nt.View(cell, renderer="gpu")
+    with pytest.raises(TypeError, match="unexpected keyword argument 'colour_by': did you mean 'color_by'"):
+        nt.View(cell, colour_by="radius")
+
+
+def test_views_in_the_browser_say_what_only_the_kernels_have(cell: nt.Morphology) -> None:
+    view = nt.View(cell)
+    for name in ("camera", "on_pick", "time"):
+        with pytest.raises(AttributeError, match=f"no '{name}': use renderer='kernel'"):
+            getattr(view, name)
+        with pytest.raises(AttributeError, match="renderer='kernel'"):
+            setattr(view, name, None)
+    with pytest.raises(AttributeError, match="a View has no 'tiem'"):
+        view.tiem = 3
+
+
+def test_views_of_few_cells_of_a_circuit_are_pages(circuit_folder: Path) -> None:
+    circuit = nt.Circuit(circuit_folder)
+    assert nt.View(circuit, nodes=[0, 1]).html == circuit.to_html(nodes=[0, 1])

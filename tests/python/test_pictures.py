@@ -265,7 +265,7 @@ def test_circuits_and_their_voltages_are_drawn(circuit_folder: Path) -> None:
 
 def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
     pytest.importorskip("jupyter_rfb")
-    view = nt.View([cell], size=(120, 90), samples=1)
+    view = nt.View([cell], renderer="kernel", size=(120, 90), samples=1)
     whole = np.asarray(view.image())
     assert whole.shape == (90, 120, 4) and (view.get_frame() == whole).all()
 

@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from ._typed import RenderOptions as RenderOptions
     from ._typed import Scene as Scene
     from ._typed import SceneMesh as SceneMesh
-    from ._kernel_view import View as View
+    from ._view import View as View
 
 # Without what needs other packages: `from neurotess import *` works everywhere.
 __all__ = [
@@ -115,7 +115,7 @@ def __getattr__(name: str) -> object:
     if name in ("dask", "plot"):
         return importlib.import_module(f".{name}", __name__)
     if name == "View":
-        return importlib.import_module("._kernel_view", __name__).View
+        return importlib.import_module("._view", __name__).View
     if name in TYPED:
         return getattr(importlib.import_module("._typed", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""The view of cells in a notebook."""
+"""The view of cells in a notebook that the kernel draws."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ REACH = 3.0
 CLICK = 4.0
 
 
-class View(RemoteFrameBuffer):  # type: ignore[misc]
-    """Cells or a circuit in a notebook, drawn where the kernel runs.
+class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
+    """Cells or a circuit in a notebook, drawn where the kernel runs: ``View(renderer="kernel")``.
 
     Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer. While something moves,
     it is drawn within a `budget` of triangles; at rest the full picture follows, with `samples` a pixel. A double click
@@ -47,7 +47,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
     (0 is the soma, as in `Mesh.section`), ``section_index`` (of ``cell.sections``; −1 is the soma), ``sample`` and
     ``position``; with None beside them.
 
-    >>> view = nt.View(cell)                                         # doctest: +SKIP
+    >>> view = nt.View(cell, renderer="kernel")                      # doctest: +SKIP
     >>> view.on_pick = print                                         # doctest: +SKIP
     >>> view.color_by = "radius"                                     # doctest: +SKIP
 
@@ -116,7 +116,7 @@ class View(RemoteFrameBuffer):  # type: ignore[misc]
         if not (name.startswith("_") or hasattr(self, name)) and self.__dict__.get("_whole"):
             from difflib import get_close_matches
 
-            known = [known for known in vars(View) if not known.startswith("_")] + ["on_pick"]
+            known = [known for known in vars(KernelView) if not known.startswith("_")] + ["on_pick"]
             near = get_close_matches(name, known, 1)
             hint = f": did you mean {near[0]!r}?" if near else ""
             raise AttributeError(f"a View has no {name!r}{hint}")
