@@ -77,7 +77,7 @@ class View:
         page = None
         if renderer == "browser" or (renderer is None and not others and _is_small(shown, options)):
             named = {PAGE[name]: value for name, value in options.items() if name in PAGE}
-            page = html(shown, **named, force=True)  # type: ignore[misc]
+            page = html(shown, **named, force=True)
         if page is None or (renderer is None and len(page) > MOST_BYTES):
             from ._kernel_view import KernelView
 

@@ -345,6 +345,28 @@ fn without_webgpu_a_page_draws_picks_and_saves_the_same() {
     opened.assert_silent();
 }
 
+#[neurotess_testing::test(needs(full, chromium, gpu))]
+fn other_cells_take_the_place_of_those_that_are_there() {
+    let mut opened = opened("#renderer=webgl");
+    let (star, page) = page_of(Meshed::sample("star"));
+    let (_, cells) = page.html.split_once("id=\"cells\">").expect("cells");
+    let (cells, _) = cells.split_once('<').expect("an end");
+    opened.browser.evaluate("app.act('m')");
+    opened.browser.evaluate(&format!(
+        "app.replace({}).then(() => app.loop.settled())",
+        serde_json::to_string(cells).expect("JSON")
+    ));
+    opened.cell = star;
+    let told = opened.browser.evaluate(
+        "[document.title, document.querySelector('h1').textContent, app.measuring.active, app.canvas.ariaLabel.slice(0, 5)]",
+    );
+    assert_eq!(told, serde_json::json!(["star", "star", false, "star,"]));
+    let mut drawn = Drawn::new(&opened.cell);
+    assert_picks_what_the_renderer_picks(&mut opened, &mut drawn);
+    assert_saves_what_the_library_exports(&mut opened);
+    opened.assert_silent();
+}
+
 /// The need of the test of types.
 fn typescript() -> Result<(), String> {
     let there = Command::new("tsc").arg("--version").output();
