@@ -6,6 +6,7 @@ import { showLegend, showScale } from './legend.js';
 import { LEVELS, read, restore, stateOf } from './link.js';
 import { Measuring, described } from './measuring.js';
 import { Loop } from './loop.js';
+import { byId, chooseScheme, makePanel, play, showLevel } from './panel.js';
 import { listen } from './pointer.js';
 import { ply, surface } from './saving.js';
 import { save } from './files.js';
@@ -23,9 +24,6 @@ const BACKGROUNDS = { light: /** @type {import('./colors.js').Rgb} */ ([255, 255
 const MAX_PIXELS = 4e6;
 /** Level of meshes that are saved while the level is automatic, as of the command. */
 const SAVED_LEVEL = 4;
-
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const byId = (id) => /** @type {T} */ (document.getElementById(id));
 
 export class App {
   /** @param {{ shaders: any, cells: any, bytes: ArrayBuffer, first: number }} page */
@@ -76,7 +74,7 @@ export class App {
     this.say(said);
     /** @type {HTMLDetailsElement} */ (byId('panel')).open = innerWidth > 760;
     byId('copy').hidden = !this.hasAddress;
-    this.makePanel();
+    makePanel(this);
     this.camera.fit(this.aspect(), this.covered());
     this.restore();
     this.recolor();
@@ -118,7 +116,7 @@ export class App {
     document.title = cells.title;
     for (const heading of document.querySelectorAll('h1')) heading.textContent = cells.title;
     this.showBackground();
-    this.makePanel();
+    makePanel(this);
     this.measure(false);
     this.tip(null, 0, 0);
     this.camera.fit(this.aspect(), this.covered());
@@ -218,95 +216,6 @@ export class App {
     document.body.style.background = css(colors.background);
   }
 
-  makePanel() {
-    const { colors, scene } = this;
-    const choose = (/** @type {string} */ id, /** @type {string[][]} */ options) =>
-      byId(id).replaceChildren(...options.map(([value, text]) => new Option(text, value)));
-    choose('scheme', colors.schemes.map(({ id, label }) => [id, label]));
-    if (scene.data.background) byId('background').prepend(new Option('of the page', 'own'));
-    const background = /** @type {HTMLSelectElement} */ (byId('background'));
-    background.value = this.background;
-    const on = (/** @type {string} */ id, /** @type {(value: string) => void} */ act) => {
-      const element = /** @type {HTMLInputElement} */ (byId(id));
-      element.oninput = () => act(element.value);
-    };
-    on('scheme', (value) => this.chooseScheme(value));
-    on('colors', (value) => {
-      if (colors.isScale()) colors.map = scene.data.color_maps.find((/** @type {any} */ map) => map.name === value);
-      else colors.palette = scene.data.palettes.find((/** @type {any} */ palette) => palette.name === value);
-      this.recolor();
-    });
-    on('background', (value) => {
-      this.background = /** @type {any} */ (value);
-      this.showBackground();
-      this.recolor();
-    });
-    on('level', () => this.showLevel());
-    for (const id of ['orthographic', 'wireframe', 'occlusion']) on(id, () => this.loop?.refresh());
-    const press = (/** @type {string} */ id, /** @type {() => void} */ act) => { byId(id).onclick = act; };
-    press('fit', () => this.act('f'));
-    press('front', () => this.act('1'));
-    press('side', () => this.act('2'));
-    press('top', () => this.act('3'));
-    press('measure', () => this.act('m'));
-    press('copy', () => this.act('l'));
-    press('picture', () => this.act('p'));
-    press('mesh', () => this.act('s'));
-    this.chooseScheme(colors.scheme.id);
-    const { recording } = scene.data;
-    if (recording?.times.length > 1) {
-      const frame = /** @type {HTMLInputElement} */ (byId('frame'));
-      frame.max = String(recording.times.length - 1);
-      on('frame', (value) => this.showFrame(+value));
-      press('play', () => this.play());
-    }
-  }
-
-  /** @param {string} id */
-  chooseScheme(id) {
-    const { colors, scene } = this;
-    colors.choose(id);
-    /** @type {HTMLSelectElement} */ (byId('scheme')).value = colors.scheme.id;
-    const isScale = colors.isScale(), all = isScale ? scene.data.color_maps : scene.data.palettes;
-    byId('colors-name').textContent = isScale ? 'Color map' : 'Palette';
-    byId('colors').replaceChildren(...all.map((/** @type {any} */ { name }) => new Option(name, name)));
-    /** @type {HTMLSelectElement} */ (byId('colors')).value = (isScale ? colors.map : colors.palette).name;
-    byId('time').hidden = !(colors.scheme.recording && scene.data.recording.times.length > 1);
-    if (colors.scheme.recording) this.showFrame(colors.frame);
-    this.recolor();
-  }
-
-  /** @param {number} frame of the recording */
-  showFrame(frame) {
-    const { times } = this.scene.data.recording;
-    this.colors.frame = Math.min(Math.max(frame, 0), Math.max(times.length - 1, 0));
-    /** @type {HTMLInputElement} */ (byId('frame')).value = String(this.colors.frame);
-    byId('frame-name').textContent = times.length ? `${+times[this.colors.frame].toFixed(3)} ms` : '';
-    this.renderer?.setColors(this.colors.update());
-    if (this.playing) this.loop?.change();
-    else this.loop?.refresh();
-  }
-
-  play() {
-    this.playing = !this.playing;
-    byId('play').textContent = this.playing ? '❚❚' : '▶';
-    const next = async () => {
-      while (this.playing) {
-        this.showFrame((this.colors.frame + 1) % this.scene.data.recording.times.length);
-        await new Promise((resolve) => setTimeout(resolve, 60));
-        await this.renderer?.done();
-      }
-      this.loop?.refresh();
-    };
-    if (this.playing) next();
-  }
-
-  showLevel() {
-    const level = this.level();
-    byId('level-name').textContent = level ? `level ${level}` : 'automatic';
-    this.loop?.refresh();
-  }
-
   /** Listens to input. */
   watch() {
     const { canvas } = this;
@@ -392,7 +301,7 @@ export class App {
     const actions = {
       f: () => look(camera.yaw, camera.pitch), 1: () => look(0, 0), 2: () => look(Math.PI / 2, 0), 3: () => look(0, Math.PI / 2 - 1e-4),
       o: () => flip('orthographic'), w: () => flip('wireframe'), m: () => this.measure(), p: () => this.savePicture(),
-      s: () => this.saveMesh(), l: () => this.copyLink(), ' ': () => this.scene.data.recording && !byId('time').hidden && this.play(),
+      s: () => this.saveMesh(), l: () => this.copyLink(), ' ': () => this.scene.data.recording && !byId('time').hidden && play(this),
       escape: () => this.measuring.active && this.measure(),
     };
     if (!actions[key]) return false;
@@ -468,8 +377,8 @@ export class App {
   restore() {
     restore(this, location.hash);
     this.showBackground();
-    this.showLevel();
-    this.chooseScheme(this.colors.scheme.id);
+    showLevel(this);
+    chooseScheme(this, this.colors.scheme.id);
   }
 }
 

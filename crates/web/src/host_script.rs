@@ -19,7 +19,7 @@ macro_rules! module {
 }
 
 /// The modules, each after those that it imports from.
-const MODULES: [(&str, &str); 22] = [
+const MODULES: [(&str, &str); 23] = [
     module!("vectors"),
     module!("bytes"),
     module!("scene"),
@@ -40,6 +40,7 @@ const MODULES: [(&str, &str); 22] = [
     module!("legend"),
     module!("picture"),
     module!("loop"),
+    module!("panel"),
     module!("pointer"),
     module!("app"),
 ];
