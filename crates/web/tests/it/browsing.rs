@@ -309,7 +309,21 @@ fn assert_picks_what_the_renderer_picks(opened: &mut Opened, drawn: &mut Drawn) 
             "{x}, {y}: {ours:?} {place}"
         );
     }
-    let nothing = opened.browser.evaluate("app.pick(2, 120)");
+    // Farther from everything than a page looks.
+    let is_far = |&pixel: &usize| {
+        let (x, y) = (pixel % width, pixel / width);
+        let around = |at: usize| at.saturating_sub(6)..at + 7;
+        let near = around(y).flat_map(|row| around(x).map(move |column| row * width + column));
+        let mut near = near.filter_map(|other| picks.get(other));
+        near.all(Option::is_none)
+    };
+    let far = (0..width * height)
+        .find(is_far)
+        .expect("a place with nothing");
+    let (x, y) = (far % width, far / width);
+    let nothing = opened
+        .browser
+        .evaluate(&format!("app.pick({x} + 0.5, {y} + 0.5)"));
     assert_eq!(nothing, Value::Null);
 }
 
@@ -345,25 +359,33 @@ fn without_webgpu_a_page_draws_picks_and_saves_the_same() {
     opened.assert_silent();
 }
 
+/// Shows another sample in the place of what there is. Returns what the page is called, and whether it measures.
+fn replace(opened: &mut Opened, sample: &str) -> Value {
+    let (cell, page) = page_of(Meshed::sample(sample));
+    let (_, cells) = page.html.split_once("id=\"cells\">").expect("cells");
+    let (cells, _) = cells.split_once('<').expect("an end");
+    let cells = serde_json::to_string(cells).expect("JSON");
+    opened.browser.evaluate(&format!(
+        "app.replace({cells}).then(() => app.completed).then(() => app.loop.settled())"
+    ));
+    opened.cell = cell;
+    opened.browser.evaluate(
+        "[document.title, document.querySelector('h1').textContent, app.canvas.ariaLabel.split(',')[0], app.measuring.active]",
+    )
+}
+
 #[neurotess_testing::test(needs(full, chromium, gpu))]
 fn other_cells_take_the_place_of_those_that_are_there() {
     let mut opened = opened("#renderer=webgl");
-    let (star, page) = page_of(Meshed::sample("star"));
-    let (_, cells) = page.html.split_once("id=\"cells\">").expect("cells");
-    let (cells, _) = cells.split_once('<').expect("an end");
     opened.browser.evaluate("app.act('m')");
-    opened.browser.evaluate(&format!(
-        "app.replace({}).then(() => app.loop.settled())",
-        serde_json::to_string(cells).expect("JSON")
-    ));
-    opened.cell = star;
-    let told = opened.browser.evaluate(
-        "[document.title, document.querySelector('h1').textContent, app.measuring.active, app.canvas.ariaLabel.slice(0, 5)]",
-    );
-    assert_eq!(told, serde_json::json!(["star", "star", false, "star,"]));
-    let mut drawn = Drawn::new(&opened.cell);
-    assert_picks_what_the_renderer_picks(&mut opened, &mut drawn);
+    for name in ["star", "granule"] {
+        let told = replace(&mut opened, name);
+        assert_eq!(told, serde_json::json!([name, name, name, false]));
+        let mut drawn = Drawn::new(&opened.cell);
+        assert_picks_what_the_renderer_picks(&mut opened, &mut drawn);
+    }
     assert_saves_what_the_library_exports(&mut opened);
+    assert_hides_by_legend(&mut opened);
     opened.assert_silent();
 }
 
