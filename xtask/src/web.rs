@@ -36,7 +36,7 @@ pub(crate) fn run_all() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The core without warnings, and the page, for the full lane. Without the library, the page is taken away, so that no
+/// The core without warnings, the renderer, and the page, for the full lane. Without the library, the page is taken away, so that no
 /// test takes an old one for it.
 pub(crate) fn check() -> anyhow::Result<String> {
     let Some(library) = Library::find()? else {
@@ -50,6 +50,8 @@ pub(crate) fn check() -> anyhow::Result<String> {
     };
     let clippy = "clippy --locked --package neurotess-wasm";
     run(library.cargo(clippy).args(["--", "-D", "warnings"]))?;
+    let renderer = "check --locked --package neurotess-render --features webgpu";
+    run(&mut library.cargo(renderer))?;
     page(&library)
 }
 
