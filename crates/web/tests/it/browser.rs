@@ -142,6 +142,12 @@ impl Browser {
         self.ask("DOM.setFileInputFiles", &files);
     }
 
+    /// Lets the page save files into a folder.
+    pub(crate) fn save_into(&mut self, folder: &Path) {
+        let allow = json!({"behavior": "allow", "downloadPath": folder});
+        self.ask("Browser.setDownloadBehavior", &allow);
+    }
+
     /// Drags a file to a place of the page (pixels), and drops it there.
     pub(crate) fn drop_file(&mut self, [x, y]: [u32; 2], file: &Path) {
         let data = json!({"items": [], "files": [file], "dragOperationsMask": 1});

@@ -1,7 +1,7 @@
 //! The page that takes tracings, in a browser: files are read and meshed there as here, and nothing is asked for.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use neurotess_color::ColorScheme;
 use neurotess_mesh::{Format, check, read_bytes};
@@ -97,6 +97,25 @@ impl Opened {
             told: serde_json::to_vec(&told).expect("JSON"),
             bytes: base64(&part(1)),
         }
+    }
+
+    /// The file that a button saves.
+    fn saved(&mut self, button: &str, file: &str) -> Vec<u8> {
+        let folder = tempfile::tempdir().expect("a folder");
+        self.browser.save_into(folder.path());
+        self.browser
+            .evaluate(&format!("document.getElementById('{button}').click()"));
+        let file = folder.path().join(file);
+        let clock = Instant::now();
+        while !file.exists() {
+            assert!(
+                clock.elapsed().as_secs() < 60,
+                "{} is not saved",
+                file.display()
+            );
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        std::fs::read(file).expect("a file")
     }
 
     /// Number of pixels of the cell's picture that are not of its background.
@@ -234,7 +253,14 @@ fn every_format_is_read_and_every_file_saved_as_the_library_does() {
         assert!((share - 1.0).abs() < 1e-6, "{extension}: {share}");
     }
     let theirs = opened.asked(&json!({"tracing": true}));
-    assert!(theirs.bytes == calls.tracing().expect("a file").bytes);
+    let tracing = calls.tracing().expect("a file").bytes;
+    assert!(theirs.bytes == tracing);
+    let page = opened
+        .browser
+        .evaluate("neurotess.page.frame.page(neurotess.page.cell.name, neurotess.page.cell.cells)");
+    assert!(opened.saved("save-page", "cell.html") == page.as_str().expect("text").as_bytes());
+    assert!(opened.saved("save-tracing", "cell.swc") == tracing);
+    assert!(opened.saved("save-mesh", "cell.ply").starts_with(b"ply\n"));
     opened.assert_silent();
 }
 
