@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use neurotess_mesh::{Role, TracingPoint};
+use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
 
 use crate::decode::{
     ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, collar, octahedral, signed16, taper, to_collar,
@@ -11,35 +11,56 @@ use crate::decode::{
 };
 use crate::packer::Packer;
 
-/// Anchors of explicit vertices: their tracing points, or the center of
-/// a soma.
+/// What an anchor is: a tracing point, or the center of a soma.
+type Key = (u32, [u32; 3]);
+
+fn key(mesh: &CoarseMesh, tracing: u32) -> Key {
+    let point = &mesh.tracing[tracing as usize];
+    if point.role == Role::Soma {
+        (u32::MAX, point.center.to_array().map(f32::to_bits))
+    } else {
+        (tracing, [0; 3])
+    }
+}
+
+/// By anchor: the greatest coordinate of an offset (µm), in all parts: a vertex that several parts have is rounded by it,
+/// and must be in one place.
+pub(crate) struct Reaches(BTreeMap<Key, f32>);
+
+impl Reaches {
+    /// Those of the vertices that are explicit.
+    pub(crate) fn new(mesh: &CoarseMesh, explicit: &[bool]) -> Self {
+        let mut reaches = BTreeMap::new();
+        let vertices = mesh.vertices.iter().zip(explicit);
+        for (vertex, _) in vertices.filter(|&(_, &explicit)| explicit) {
+            let offset = vertex.position - mesh.tracing[vertex.tracing as usize].center;
+            let reach = reaches
+                .entry(key(mesh, vertex.tracing))
+                .or_insert(f32::MIN_POSITIVE);
+            *reach = reach.max(offset.abs().max_element() * 1.000_001);
+        }
+        Self(reaches)
+    }
+}
+
+/// Anchors of explicit vertices of a part.
 pub(crate) struct Anchors {
-    /// By key: index, tracing point and greatest coordinate of an offset (µm).
-    all: BTreeMap<(u32, [u32; 3]), (u32, u32, f32)>,
+    /// By key: index, tracing point and reach.
+    all: BTreeMap<Key, (u32, u32, f32)>,
 }
 
 impl Anchors {
-    fn key(packer: &Packer<'_>, tracing: u32) -> (u32, [u32; 3]) {
-        let point = &packer.mesh.tracing[tracing as usize];
-        if point.role == Role::Soma {
-            (u32::MAX, point.center.to_array().map(f32::to_bits))
-        } else {
-            (tracing, [0; 3])
-        }
-    }
-
-    pub(crate) fn new(packer: &Packer<'_>, explicit: &[u32]) -> Self {
+    pub(crate) fn new(packer: &Packer<'_>, reaches: &Reaches, explicit: &[u32]) -> Self {
         let mut all = BTreeMap::new();
         for &v in explicit {
             let vertex = &packer.mesh.vertices[v as usize];
-            let offset = vertex.position - packer.mesh.tracing[vertex.tracing as usize].center;
-            let key = Self::key(packer, vertex.tracing);
-            let entry = all.entry(key).or_insert((0, vertex.tracing, 0.0_f32));
-            entry.2 = entry.2.max(offset.abs().max_element());
+            let key = key(packer.mesh, vertex.tracing);
+            let reach = reaches.0.get(&key).copied();
+            let reach = reach.expect("a part has no vertices but explicit ones here");
+            all.entry(key).or_insert((0, vertex.tracing, reach));
         }
         for (index, entry) in (0..).zip(all.values_mut()) {
             entry.0 = index;
-            entry.2 = (entry.2 * 1.000_001).max(f32::MIN_POSITIVE);
         }
         Self { all }
     }
@@ -48,7 +69,7 @@ impl Anchors {
         let vertex = &packer.mesh.vertices[v as usize];
         let (anchor, tracing, reach) = self
             .all
-            .get(&Self::key(packer, vertex.tracing))
+            .get(&key(packer.mesh, vertex.tracing))
             .copied()
             .expect("anchors are made of all explicit vertices");
         let center = packer.mesh.tracing[tracing as usize].center;

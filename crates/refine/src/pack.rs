@@ -3,6 +3,7 @@
 
 use neurotess_mesh::CoarseMesh;
 
+use crate::anchors::Reaches;
 use crate::decode::SPHERE_U32S;
 use crate::packer::Packer;
 use crate::part::{MeshPart, PATCHES_OF_SPHERE};
@@ -29,9 +30,10 @@ pub fn pack(
     while packer.make_parted_explicit(&piles) {
         piles = packer.piles(most);
     }
+    let reaches = Reaches::new(mesh, &packer.explicit);
     let mut parts: Vec<MeshPart> = piles
         .iter()
-        .map(|pile| packer.write(&packer.contents(pile)))
+        .map(|pile| packer.write(&packer.contents(pile), &reaches))
         .collect();
     write_bends(mesh, &mut parts);
     parts

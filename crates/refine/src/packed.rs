@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use neurotess_mesh::{Role, TracingPoint};
 
-use crate::anchors::Anchors;
+use crate::anchors::{Anchors, Reaches};
 use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{
     POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_ORDINARY,
@@ -17,14 +17,14 @@ use crate::part::{MAX_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
 use crate::ring_form::RingForm;
 
 impl Packer<'_> {
-    pub(crate) fn write(&self, contents: &Contents) -> MeshPart {
+    pub(crate) fn write(&self, contents: &Contents, reaches: &Reaches) -> MeshPart {
         let mut part = MeshPart::default();
         self.list_patches(contents, &mut part);
         let rings = contents.slots.iter().filter_map(|slot| slot.ring);
         let forms = rings.filter_map(|ring| self.form(ring));
         let color_keys = ColorKeys::new(forms.map(|form| self.color_key(form.circle().tracing)));
         let point_of = self.write_points(contents, &color_keys, &mut part);
-        self.write_explicit(contents, &mut part);
+        self.write_explicit(contents, reaches, &mut part);
         self.write_shaped(contents, &mut part);
         let shaped = contents.shaped.iter();
         let shaped = shaped.flat_map(|&(first, _)| first..first + 4);
@@ -119,9 +119,9 @@ impl Packer<'_> {
         point_of
     }
 
-    fn write_explicit(&self, contents: &Contents, part: &mut MeshPart) {
+    fn write_explicit(&self, contents: &Contents, reaches: &Reaches, part: &mut MeshPart) {
         part.layout.explicit = part.packed.len() as u32;
-        let anchors = Anchors::new(self, &contents.explicit);
+        let anchors = Anchors::new(self, reaches, &contents.explicit);
         for &v in &contents.explicit {
             let (vertex, position, normal) = anchors.explicit(self, v);
             part.packed.extend(vertex);

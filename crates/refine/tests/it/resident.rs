@@ -122,6 +122,29 @@ fn parts_are_closed_together() {
 }
 
 #[neurotess_testing::test]
+fn a_vertex_that_parts_share_is_in_one_place() {
+    let mesh = tree(30, 6, 0.8);
+    let parts = pack(&mesh, &[], &[], 512);
+    // As each part alone has its vertices.
+    let mut places: Vec<Option<(Vec3, Vec3)>> = vec![None; mesh.vertices.len()];
+    let mut shared = 0;
+    for part in &parts {
+        let rounded = dequantized(&mesh, std::slice::from_ref(part));
+        let patches = part.patches.iter().filter(|&&patch| patch != u32::MAX);
+        let corners = patches.flat_map(|&patch| mesh.patches[patch as usize].corners);
+        let corners: std::collections::BTreeSet<u32> = corners.collect();
+        for v in corners {
+            let vertex = &rounded.vertices[v as usize];
+            let place = (vertex.position, vertex.normal);
+            let known = places[v as usize].replace(place);
+            shared += usize::from(known.is_some());
+            assert_eq!(known.unwrap_or(place), place, "vertex {v}");
+        }
+    }
+    assert!(shared > 10, "{shared}");
+}
+
+#[neurotess_testing::test]
 fn spheres_hold_their_patches_at_any_level() {
     for (radius, level) in [(0.4, 2), (1.5, 9), (0.1, 5)] {
         let mesh = tree(30, 5, radius);
