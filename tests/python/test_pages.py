@@ -164,6 +164,8 @@ def test_views_are_pages_that_the_browser_draws(cell: nt.Morphology, tmp_path: P
     assert view.html == nt.html([cell], values=[distances], values_title="distance", unit="µm")
     # An iterator can be read once only.
     assert nt.View(iter([cell])).html == nt.html([cell])
+    over_time = {"values": np.outer([0, 1], distances), "times": [0, 1]}
+    assert nt.View(cell, **over_time).html == nt.html(cell, **over_time)
     view.close()
 
 

@@ -378,6 +378,17 @@ def test_surfaces_are_drawn_alone(cell: nt.Morphology) -> None:
         mesh.render(values=[1.0])
 
 
+def test_views_show_times_of_numbers(cell: nt.Morphology) -> None:
+    pytest.importorskip("jupyter_rfb")
+    rising = np.outer([0.0, 1.0, 2.0], np.ones(len(cell)))
+    view = nt.View(cell, renderer="kernel", values=rising, times=[0, 2, 4], range=(0, 2), size=(96, 64), samples=4)
+    assert view.times == [0, 2, 4] and view.time == 0
+    first = np.asarray(view.image())
+    view.time = 3.0
+    assert view.time == 2 and (np.asarray(view.image()) != first).any()
+    view.close()
+
+
 def test_meshes_are_drawn_from_files_and_from_memory(cell: nt.Morphology, tmp_path: Path) -> None:
     around = nt.mesh(nt.synth("star", points=60), level=1)
     file = tmp_path / "around.ply"

@@ -10,6 +10,7 @@ from ._groups import ungrouped
 from ._packages import needed
 from ._pictures import Image, render
 from ._scene import check_names, drawing_of
+from ._series import Times
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
     shows all again.
 
     `what` and the options are those of `render`, without those of the camera, of which there are `camera` and
-    `orthographic` (no perspective): both can be set. With a `report`, `time` can be set.
+    `orthographic` (no perspective): both can be set. With a `report`, or `values` with `times`, `time` can be set.
     `on_pick` is called with a dictionary when a neurite or a soma is clicked: ``name``, ``node_id``, ``section``
     (0 is the soma, as in `Mesh.section`), ``section_index`` (of ``cell.sections``; −1 is the soma), ``sample`` and
     ``position``; with None beside them.
@@ -103,12 +104,15 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
         self._shown_colors: str | None = None
         if report is not None:
             self._set_report(report)
+        elif options.get("times") is not None:
+            times = Times(options["times"])
+            self._set_times([times.start + times.step * frame for frame in range(times.count)])
         self._make(color_by)
         self.color_by = color_by
         if self._times:
             self.time = self._times[0] if time is None else time
         elif time is not None:
-            raise ValueError("there is no report, so there are no times")
+            raise ValueError("there is no report and no times=, so there are no times")
         self._whole = True
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -135,7 +139,7 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
     @validate("time")
     def _check_time(self, proposal: Any) -> float:
         if not self._times or proposal["value"] is None:
-            raise ValueError("a time is set where there is a report")
+            raise ValueError("a time is set where there is a report, or values with times=")
         step = self._times[1] - self._times[0] if len(self._times) > 1 else 1.0
         frame = int((proposal["value"] - self._times[0]) / step + 1e-6)
         return self._times[min(max(frame, 0), len(self._times) - 1)]
@@ -148,7 +152,7 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
 
     @property
     def times(self) -> list[float]:
-        """Times (ms) of the report's frames; none without a report."""
+        """Times (ms) of the frames of the report or of `values`; none without."""
         return list(self._times)
 
     @property
@@ -191,8 +195,11 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
         if not isinstance(self._what, Circuit):
             raise ValueError("a report needs a circuit, whose cells have its values")
         path = self._what.reports.get(report, report)
-        times = Report(path).times.tolist()
         self._options["report"] = path
+        self._set_times(Report(path).times.tolist())
+
+    def _set_times(self, times: list[float]) -> None:
+        """All frames become pictures of the scene."""
         if len(times) > 1:
             end = times[-1] + 0.5 * (times[1] - times[0])
             self._options["time"] = f"{times[0]!r}:{end!r}:{times[1] - times[0]!r}"

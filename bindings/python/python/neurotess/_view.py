@@ -27,7 +27,7 @@ MOST_CELLS = 50
 PAGE = {
     name: name
     for name in (
-        *("color_by", "values", "unit", "range", "palette", "colormap", "background", "least_width"),
+        *("color_by", "values", "times", "unit", "range", "palette", "colormap", "background", "least_width"),
         *("radius_factor", "radius", "min_radius", "soma", "ring", "types"),
         *("nodes", "node_set", "population", "region", "sample", "sample_seed"),
     )
