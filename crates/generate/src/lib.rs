@@ -28,7 +28,7 @@ use neurotess_mesh::{CoarseMesh, Role, Vertex};
 use neurotess_morphology::{Morphology, Soma};
 
 use soma::first_rings::RingRequests;
-use soma::stems;
+use soma::{near_forks, stems};
 use stop::Stop;
 use tracing::{Skeleton, coordinates, mend, separate, smooth, thin};
 use tubes::Somata;
@@ -129,6 +129,12 @@ pub fn generate_stoppable(
     mend::merge_coincident(&mut skeleton, &mut warnings);
     let mut soma_spheres =
         soma::soma_spheres(morphology, &skeleton, &as_neurites, options, &mut warnings);
+    near_forks::part(
+        &mut skeleton,
+        &soma_spheres,
+        options.soma == SomaMethod::Fem,
+        &mut warnings,
+    );
     mend::leave_out_inside(&mut skeleton, &soma_spheres, &mut warnings);
     let smoothing = smooth::smooth(&mut skeleton, options.smooth, &mut warnings);
     if options.radius_factor != 1.0 || options.polygons.is_some() {

@@ -14,6 +14,7 @@ pub(crate) const CODES: [&str; 37] = [
     "dense_points",
     "drawn_in",
     "far_from_soma",
+    "fork_at_soma",
     "fork_split",
     "fork_thickened",
     "insertion_quad_far",

@@ -28,7 +28,7 @@ pub(crate) struct Insertion {
 
 /// Distance of the corners of an inset's quad from its neurite's axis, in radii of the neurite: half the
 /// quad is 1.7 radii wide.
-const QUAD_REACH: f64 = 2.4;
+pub(super) const QUAD_REACH: f64 = 2.4;
 
 impl Insertion {
     /// Angle that the ring's radius takes seen from the soma's center.
@@ -75,7 +75,7 @@ impl Insertion {
 /// Largest angle that a ring may take: beyond, the soma is but a swelling of its neurite.
 const WIDEST: f64 = 0.6;
 /// Free angle between two rings, as a share of the sum of their own.
-const GAP: f64 = 1.25;
+pub(super) const GAP: f64 = 1.25;
 /// Free angle between two rings, however thin (radians).
 pub(crate) const MIN_GAP: f64 = 0.05;
 /// A crowded ring is made smaller down to this share before directions give way.

@@ -7,6 +7,7 @@ pub(crate) mod first_rings;
 mod flow;
 mod insertion_quads;
 mod measure;
+pub(crate) mod near_forks;
 mod profile;
 mod pull;
 mod reference;

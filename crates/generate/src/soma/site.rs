@@ -12,7 +12,7 @@ const MIN_WAY: f64 = 1.5;
 /// A neurite whose radius is below this share of its soma's leaves it through an inset: pulled to a
 /// ring this small, a quad of the soma creases like a star. Thicker ones pull the soma out towards them,
 /// as in García-Cantero et al. 2017; at 0.2 most real somata would stay plain spheres.
-const THIN: f64 = 0.1;
+pub(super) const THIN: f64 = 0.1;
 /// Least height of an inset's corners over the soma, in radii of the neurite.
 const SOMA_LIFT: f64 = 0.4;
 /// Height of a hillock over the traced surface, in radii of the neurite: of thin and of thick ones, by their share of the
@@ -34,7 +34,7 @@ pub(crate) fn collar(height: f64, radius: f64) -> f64 {
 }
 
 /// Longest way along a path that is looked for the end of a hillock, in radii of the soma.
-const MAX_WAY: f64 = 2.0;
+pub(super) const MAX_WAY: f64 = 2.0;
 
 /// Height (µm) of the hillock of a neurite.
 pub(super) fn hillock(radius: f64, soma: &SomaSphere) -> f64 {

@@ -12,6 +12,8 @@ use crate::warning::Warnings;
 const FALLBACK_RADIUS: f64 = 0.5;
 /// Points nearer to their parent than this share of the larger radius are one point.
 const COINCIDENT: f64 = 1e-3;
+/// What is so near over the soma's surface lies within it, as a share of the distance from the center.
+const INSIDE: f64 = 0.02;
 
 /// Changes all radii (µm).
 pub(crate) fn change_radii(skeleton: &mut Skeleton, change: impl Fn(f64) -> f64) {
@@ -154,8 +156,7 @@ pub(crate) fn merge_coincident(skeleton: &mut Skeleton, warnings: &mut Warnings)
     skeleton.retain(&keep);
 }
 
-/// Leaves out what a neurite traces inside its soma: its leading points, or all of it. A fork just
-/// outside goes too, as its ring would cut the soma; its branches become neurites.
+/// Leaves out what a neurite traces inside its soma: its leading points, or all of it.
 pub(crate) fn leave_out_inside(
     skeleton: &mut Skeleton,
     soma_spheres: &[Option<SomaSphere>],
@@ -181,13 +182,7 @@ pub(crate) fn leave_out_inside(
         };
         let distance = node.center.distance(soma_sphere.center);
         let surface = soma_sphere.towards(node.center);
-        let fork = children.of(i as u32).len() > 1;
-        let margin = if fork {
-            node.radius.min(0.5 * surface)
-        } else {
-            0.02 * surface
-        };
-        if distance < surface + margin {
+        if distance < (1.0 + INSIDE) * surface {
             keep[i] = false;
             leading[i] = Some(soma);
             dropped_roots += usize::from(children.of(i as u32).is_empty());

@@ -275,6 +275,21 @@ impl Skeleton {
         self.links().truncate(kept);
     }
 
+    /// Takes nodes away on which no other node hangs but such as go, too.
+    pub(crate) fn cut(&mut self, keep: &[bool]) {
+        let mut new_index = vec![NONE; keep.len()];
+        let kept = new_index.iter_mut().zip(keep).filter(|(_, keep)| **keep);
+        for (new, (index, _)) in (0..).zip(kept) {
+            *index = new;
+        }
+        let nodes = self.links();
+        let mut keep = keep.iter();
+        nodes.retain(|_| keep.next() == Some(&true));
+        for node in nodes.iter_mut().filter(|node| node.parent != NONE) {
+            node.parent = new_index[node.parent as usize];
+        }
+    }
+
     /// Brings parents before children again after links were changed, depth first.
     pub(crate) fn reorder(&mut self) {
         // Lists of children do not depend on the order of nodes.

@@ -4,6 +4,7 @@ mod branches;
 mod forks;
 mod growth;
 mod limits;
+mod near_somata;
 mod rings;
 mod soma;
 mod stop;
