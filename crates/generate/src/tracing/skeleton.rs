@@ -226,6 +226,24 @@ impl Skeleton {
         (Shapes(&mut self.nodes), children)
     }
 
+    /// Changes a node, but for what it hangs on: where it is, how thick, and the point that it is labeled as.
+    pub(crate) fn set_point(
+        &mut self,
+        index: u32,
+        label: SkeletonNode,
+        center: DVec3,
+        radius: f64,
+    ) {
+        let node = &mut self.nodes[index as usize];
+        *node = SkeletonNode {
+            center,
+            radius,
+            parent: node.parent,
+            root: node.root,
+            ..label
+        };
+    }
+
     /// Nodes to add to and to link anew; children are listed anew afterwards.
     pub(crate) fn links(&mut self) -> &mut Vec<SkeletonNode> {
         self.children.take();

@@ -1,7 +1,9 @@
 //! Leaves out what a tube of the traced radius cannot show: twigs inside a thicker neurite, forks
 //! on top of one another, points closer together than the radius allows.
 
-use crate::tracing::{Children, NONE, Root, Skeleton};
+use glam::DVec3;
+
+use crate::tracing::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
 /// Two forks nearer than this share of the larger radius become one.
@@ -139,12 +141,15 @@ pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings
     skeleton.retain(&keep);
 }
 
-/// Leaves out ordinary points that are closer to a neighbor than their radius allows.
+/// Gathers ordinary points that are closer to a neighbor than their radius allows: one stands for them, in their middle
+/// and with their mean cross-section. Which one is kept must not tell how thick a neurite is: thin points leave
+/// room for one another where thick ones do not, so of radii that vary by 30 % the thin ones stayed.
 pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     let children = skeleton.children();
     let mut keep = vec![true; skeleton.nodes().len()];
-    // Nearest kept node above each node.
+    // Nearest kept node above each node, and the ordinary node that each node is gathered by.
     let mut above: Vec<u32> = vec![NONE; skeleton.nodes().len()];
+    let mut gathered: Vec<(u32, u32)> = Vec::new();
     for i in 0..skeleton.nodes().len() as u32 {
         let node = *skeleton.node(i);
         let Some(parent) = Some(node.parent).filter(|&p| p != NONE) else {
@@ -174,6 +179,9 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
             }
         } else if near(last) {
             keep[i as usize] = false;
+            if ordinary(skeleton, children, last) {
+                gathered.push((last, i));
+            }
         }
         above[i as usize] = last;
     }
@@ -181,9 +189,30 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     warnings.add_many(
         "dense_points",
         dropped,
-        "point nearer to its neighbor than the radius allows: left out of the mesh",
+        "point nearer to its neighbor than the radius allows: one stands for several",
     );
+    gathered.sort_unstable();
+    for group in gathered.chunk_by(|a, b| a.0 == b.0) {
+        let points = [group[0].0]
+            .into_iter()
+            .chain(group.iter().map(|&(_, i)| i));
+        gather(skeleton, &points.collect::<Vec<u32>>());
+    }
     skeleton.retain(&keep);
+}
+
+/// Moves the first of some points to the middle of all, and gives it their mean cross-section and the label of the one
+/// nearest there.
+fn gather(skeleton: &mut Skeleton, points: &[u32]) {
+    let nodes = points.iter().map(|&point| *skeleton.node(point));
+    let count = points.len() as f64;
+    let center = nodes.clone().map(|node| node.center).sum::<DVec3>() / count;
+    let square = nodes.clone().map(|node| node.radius.powi(2)).sum::<f64>() / count;
+    let off = |node: &SkeletonNode| node.center.distance_squared(center);
+    let Some(nearest) = nodes.min_by(|a, b| off(a).total_cmp(&off(b))) else {
+        return;
+    };
+    skeleton.set_point(points[0], nearest, center, square.sqrt());
 }
 
 fn ordinary(skeleton: &Skeleton, children: &Children, node: u32) -> bool {

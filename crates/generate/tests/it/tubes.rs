@@ -107,6 +107,27 @@ fn volume(generated: &Generated) -> f32 {
     corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
+/// Points a seventh of a radius apart, as voxels are, whose radii vary by 30 %: kept as they came, they hold 10 % less.
+#[neurotess_testing::test]
+fn dense_points_show_their_mean_thickness() {
+    let radius = |i: usize| 1.0 + 0.3 * (2.4 * i as f32).sin();
+    let tube = |radius: &dyn Fn(usize) -> f32| {
+        let points: Vec<(Vec3, f32)> = (0..240)
+            .map(|i| (vec3(0.15 * i as f32, 0.0, 0.0), radius(i)))
+            .collect();
+        made(&path(&points))
+    };
+    let square = (0..240).map(|i| radius(i).powi(2)).sum::<f32>() / 240.0;
+    let dense = tube(&radius);
+    let share = volume(&dense) / volume(&tube(&|_| square.sqrt()));
+    assert!((share - 1.0).abs() < 0.03, "{share}");
+    // Each ring is still labeled as one of the points that it stands for.
+    for ring in &dense.mesh.tracing {
+        let x = 0.15 * (ring.sample.0 - 1) as f32;
+        assert!((ring.center.x - x).abs() < 0.3, "{} at {x}", ring.center.x);
+    }
+}
+
 /// Faults of many shapes of one kind, at level 2.
 fn sum(shapes: impl Iterator<Item = Morphology>) -> usize {
     shapes.map(|shape| faults(&made(&shape), 2)).sum()
@@ -223,9 +244,14 @@ proptest! {
         let generated = made(&morphology);
         faults(&generated, 2);
         for point in &generated.mesh.tracing {
-            let sample = &points[point.sample.0 as usize - 1];
-            prop_assert!(point.radius > 0.34 * sample.1 && point.radius <= 1.001 * sample.1);
-            prop_assert!(point.center.distance(sample.0) <= 1.6 * sample.1);
+            let sample = points[point.sample.0 as usize - 1].0;
+            // A ring may stand for several samples, which are within half a radius of one another.
+            let near = points.iter().filter(|(at, _)| at.distance(sample) <= 1.0);
+            let (thin, thick) = near.fold((f32::INFINITY, 0.0_f32), |(thin, thick), (_, radius)| {
+                (thin.min(*radius), thick.max(*radius))
+            });
+            prop_assert!(point.radius > 0.34 * thin && point.radius <= 1.001 * thick);
+            prop_assert!(point.center.distance(sample) <= 1.6 * thick);
         }
         prop_assert_eq!(&generated.mesh, &made(&morphology).mesh);
     }
