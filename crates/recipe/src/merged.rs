@@ -1,5 +1,7 @@
 //! A refined surface merged with itself where it crosses.
 
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
 use neurotess_mesh::{
     CoarseMesh, Extent, Quality, Soundness, SurfaceMesh, Topology, measure_surface, quality,
 };
@@ -21,10 +23,9 @@ const FILL: f64 = 2.0;
 /// narrower triangles are poor ones.
 const MIN_ANGLE: f64 = 20.0;
 
-/// The same as a share of the angle of half a rectangle whose sides have the ratio that was asked for: where that
-/// is narrow, wider triangles would only be had by giving up sides of the tubes. With 0.9 the area of straight
-/// neurites grows by 1 %.
-const MIN_SHARE: f64 = 0.85;
+/// The same as a share of the angle of half a rectangle between two rings: where that is narrow, wider triangles would only be
+/// had by giving up sides of the tubes.
+const MIN_SHARE: f64 = 0.95;
 
 /// A refined surface merged with itself where it crossed.
 pub struct Merged {
@@ -84,8 +85,11 @@ impl Merged {
 /// Which angles (degrees) of a mesh for simulators are made larger.
 fn least_angle(levels: Levels) -> f64 {
     match levels {
-        Levels::Edges(EdgeRule::Lengths { aspect, .. }) => {
-            let half_rectangle = (1.0 / f64::from(aspect)).atan().to_degrees();
+        Levels::Edges(EdgeRule::Lengths { radii, aspect, .. }) => {
+            // Pieces of a ring's four edges, which are arcs of a right angle.
+            let pieces = (FRAC_PI_2 / f64::from(radii)).round().max(1.0);
+            let chord = 2.0 * (FRAC_PI_4 / pieces).sin();
+            let half_rectangle = (chord / f64::from(radii * aspect)).atan().to_degrees();
             MIN_ANGLE.min(MIN_SHARE * half_rectangle)
         }
         _ => MIN_ANGLE,

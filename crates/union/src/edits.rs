@@ -21,6 +21,13 @@ const GAIN: f64 = 1.02;
 /// two rings that are near each other, goes one by one, and the next one wins back what the first has cost.
 const LOSS: f64 = 0.8;
 
+/// Cosine of the angle (50°) up to which a collapse may bend the surface at an edge, or beyond which it may not bend it any
+/// more: a tube of eight sides has 45° between them, one of six 60°.
+const CREASE: f64 = 0.64;
+
+/// Sine of an angle (6°) below which a face is worse for a solver than a crease: what mends it may bend the surface.
+const NEEDLE: f64 = 0.1;
+
 /// Below this sine the normal of a face says little.
 const SHAPELESS: f64 = 0.02;
 
@@ -82,7 +89,21 @@ impl Edits<'_, '_> {
         let whole = normal(&old[0]) + normal(&old[1]);
         let flat = old.iter().chain(&new).all(|face| agrees(face, whole));
         let (before, after) = (least(&old), least(&new));
-        (flat && after > GAIN * before).then_some((after, Edit::Flip(side)))
+        let better = flat
+            && after > GAIN * before
+            && (before < NEEDLE || {
+                let corners = |face: u32| self.stars.work.triangles[face as usize];
+                let was = [
+                    Facet::new(face, corners(face), normal(&old[0])),
+                    Facet::new(other, corners(other), normal(&old[1])),
+                ];
+                let is = [
+                    Facet::new(face, [apex, from, far], normal(&new[0])),
+                    Facet::new(other, [apex, far, to], normal(&new[1])),
+                ];
+                self.is_as_smooth(&was, &is)
+            });
+        better.then_some((after, Edit::Flip(side)))
     }
 
     /// The best of some places on the way of a vertex to the middle of its neighbors, in the plane that touches
@@ -117,6 +138,7 @@ impl Edits<'_, '_> {
             let enough = best.map_or(GAIN * before, |(best, _)| best);
             if self.is_near(vertex, to)
                 && let Some(after) = after_shift(&around, to, enough)
+                && (before < NEEDLE || self.is_smooth_after_shift(vertex, star, to))
             {
                 best = Some((after, Edit::Move(vertex, to)));
             }
@@ -192,11 +214,17 @@ impl Edits<'_, '_> {
             return None;
         }
         let (mut before, mut after) = (f64::INFINITY, f64::INFINITY);
+        let (mut old_faces, mut new_faces) = (Fan::new(), Fan::new());
         for (vertex, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
             for &face in self.stars.of(vertex)? {
+                let corners = self.stars.work.triangles[face as usize];
                 let old = self.stars.work.corners(face);
                 before = before.min(sharpness(&old));
-                if self.stars.work.triangles[face as usize].contains(&other) {
+                let vanishes = corners.contains(&other);
+                if !vanishes || vertex == ends[0] {
+                    old_faces.push(Facet::new(face, corners, normal(&old)));
+                }
+                if vanishes {
                     continue;
                 }
                 let new = self.stars.corners_with(face, vertex, place);
@@ -205,9 +233,64 @@ impl Edits<'_, '_> {
                     return None;
                 }
                 after = after.min(sharpness_by(&new, turned));
+                let corners =
+                    corners.map(|corner| if corner == ends[0] { ends[1] } else { corner });
+                new_faces.push(Facet::new(face, corners, turned));
             }
         }
-        (after > LOSS * before).then_some(after)
+        let allowed =
+            after > LOSS * before && (before < NEEDLE || self.is_as_smooth(&old_faces, &new_faces));
+        allowed.then_some(after)
+    }
+
+    /// Whether the faces around a vertex make no crease once it has moved.
+    fn is_smooth_after_shift(&self, vertex: u32, star: &[u32], to: DVec3) -> bool {
+        let facet = |&face: &u32, corners: [DVec3; 3]| {
+            Facet::new(
+                face,
+                self.stars.work.triangles[face as usize],
+                normal(&corners),
+            )
+        };
+        let new = star
+            .iter()
+            .map(|face| facet(face, self.stars.corners_with(*face, vertex, to)));
+        let old = star
+            .iter()
+            .map(|face| facet(face, self.stars.work.corners(*face)));
+        self.is_as_smooth(&old.collect::<Fan>(), &new.collect::<Fan>())
+    }
+
+    /// Whether new faces make no crease, or none that is sharper than those of the old ones.
+    fn is_as_smooth(&self, old: &[Facet], new: &[Facet]) -> bool {
+        let crease = self.crease(new);
+        crease >= CREASE || crease >= self.crease(old)
+    }
+
+    /// Cosine of the sharpest angle between some faces, and between these and their neighbors.
+    fn crease(&self, faces: &[Facet]) -> f64 {
+        let mut least = 1.0_f64;
+        for facet in faces {
+            for side in 0..3 {
+                let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]];
+                let beside = match faces.iter().find(|other| other.has_side(to, from)) {
+                    Some(other) => Some(other.normal),
+                    None => self.beside(facet.face, [from, to], faces),
+                };
+                least = beside.map_or(least, |beside| least.min(facet.normal.dot(beside)));
+            }
+        }
+        least
+    }
+
+    /// Unit normal of the face beside some, across one of their sides.
+    fn beside(&self, face: u32, [from, to]: [u32; 2], faces: &[Facet]) -> Option<DVec3> {
+        let (mut other, _) = self.stars.across(face, from, to)?;
+        // The side was another one's before.
+        if faces.iter().any(|facet| facet.face == other) {
+            (other, _) = self.stars.across(other, from, to)?;
+        }
+        Some(unit(normal(&self.stars.work.corners(other))))
     }
 
     fn is_fixed(&self, vertex: u32) -> bool {
@@ -220,6 +303,34 @@ impl Edits<'_, '_> {
         let first = self.first[vertex as usize].as_dvec3();
         radius <= 0.0 || first.distance(place) <= REACH * radius
     }
+}
+
+type Fan = SmallVec<[Facet; 16]>;
+
+/// A face as it is, or would be.
+struct Facet {
+    face: u32,
+    corners: [u32; 3],
+    /// Unit normal.
+    normal: DVec3,
+}
+
+impl Facet {
+    fn new(face: u32, corners: [u32; 3], normal: DVec3) -> Self {
+        Self {
+            face,
+            corners,
+            normal: unit(normal),
+        }
+    }
+
+    fn has_side(&self, from: u32, to: u32) -> bool {
+        (0..3).any(|side| self.corners[side] == from && self.corners[(side + 1) % 3] == to)
+    }
+}
+
+fn unit(normal: DVec3) -> DVec3 {
+    normal.try_normalize().unwrap_or(DVec3::ZERO)
 }
 
 /// A face around a vertex that may move.

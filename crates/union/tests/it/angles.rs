@@ -41,6 +41,45 @@ fn narrow_triangles_become_wide() {
     }
 }
 
+/// The largest angle (degrees) between two facets that share an edge.
+fn sharpest(mesh: &SurfaceMesh) -> f32 {
+    let mut beside = std::collections::BTreeMap::<[u32; 2], Vec<Vec3>>::new();
+    for &face in &mesh.faces.triangles {
+        let [a, b, c] = face.map(|v| mesh.vertices[v as usize].position);
+        let normal = (b - a).cross(c - a);
+        for k in 0..3 {
+            let [from, to] = [face[k], face[(k + 1) % 3]];
+            let edge = [from.min(to), from.max(to)];
+            beside.entry(edge).or_default().push(normal);
+        }
+    }
+    let angles = beside.values().filter_map(|normals| match normals[..] {
+        [a, b] => Some(a.angle_between(b)),
+        _ => None,
+    });
+    angles.fold(0.0, f32::max).to_degrees()
+}
+
+/// All triangles of the tube are narrower than asked for, and would be wider with six sides and 60° between them.
+#[neurotess_testing::test]
+fn tubes_keep_eight_sides() {
+    let line: Vec<Vec3> = (0..12)
+        .map(|n| Vec3::new(2.6 * n as f32, 0.0, (n as f32).sin() * 0.1))
+        .collect();
+    let mesh = tube(&line, 1.0, 8, 1);
+    let (as_it_was, before) = merged(&mesh, &BARE);
+    let (union, after) = merged(&mesh, &WIDE);
+    assert!(before.quality.min_angle_p1 < 18.0);
+    let [before, after] = [(as_it_was, before), (union, after)]
+        .map(|(union, verdict)| (sharpest(&union.mesh), verdict.area));
+    neurotess_testing::note!("{before:?}, {after:?}");
+    assert!(after.0 < before.0.max(50.3), "{before:?}, {after:?}");
+    assert!(
+        (after.1 / before.1 - 1.0).abs() < 0.004,
+        "{before:?}, {after:?}"
+    );
+}
+
 #[neurotess_testing::test]
 fn wide_triangles_stay_to_the_bit() {
     let line: Vec<Vec3> = (0..9).map(|n| Vec3::X * n as f32 * 0.7).collect();
