@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 37] = [
+pub(crate) const CODES: [&str; 38] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
