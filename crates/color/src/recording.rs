@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use crate::categorical::first_values;
 use crate::compartments::{matched, on_cell};
-use crate::own_series::Memory;
+use crate::own_series::{Memory, OwnSeries};
 use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
@@ -66,7 +66,7 @@ pub struct Recording {
     pub unit: String,
     /// Times (ms) of its frames, or of steps through spikes.
     pub time: TimeAxis,
-    pub(crate) color_keys: Vec<Vec<u32>>,
+    color_keys: Vec<Vec<u32>>,
     pub(crate) has_values: Vec<bool>,
     pub(crate) source: Source,
 }
@@ -191,6 +191,29 @@ impl Recording {
             has_values,
             source: Source::Spikes(spikes, firing),
         })
+    }
+
+    /// A recording of numbers in memory. `instances`: the cell that each neuron of the scene shows.
+    ///
+    /// # Panics
+    /// If cells and series differ in number, or a series has other numbers of values than it says.
+    pub fn of_series(series: OwnSeries, cells: &[Cell<'_>], instances: &[usize]) -> Self {
+        let (title, unit, time) = (series.title.clone(), series.unit.clone(), series.time);
+        let (memory, color_keys) = Memory::new(series, cells, instances);
+        Self {
+            file: match title.is_empty() {
+                true => "values".into(),
+                false => title.clone(),
+            },
+            title,
+            unit,
+            time,
+            color_keys,
+            has_values: (0..instances.len())
+                .map(|instance| memory.has_values(instance))
+                .collect(),
+            source: Source::Memory(memory),
+        }
     }
 
     /// Whether it holds spikes, which have no frames.
@@ -369,3 +392,6 @@ fn steps_through(spikes: &Spikes) -> TimeAxis {
         frames,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,7 +21,8 @@ mod smooth;
 mod stack;
 mod triangles;
 
-pub use shape::{Hidden, SomaMeshError, SomaShape};
+pub use shape::SomaShape;
+pub use triangles::{Hidden, SomaMeshError};
 
 use std::f64::consts::PI;
 

@@ -23,7 +23,7 @@ use super::cones::Cones;
 use super::directions::Directions;
 use super::outline::Outline;
 use super::stack::Stack;
-use super::triangles::Triangles;
+use super::triangles::{Hidden, SomaMeshError, Triangles};
 use crate::{Soma, SomaKind};
 
 /// A soma's surface as it was traced: its distance from a center in each direction. µm, relative to the
@@ -37,46 +37,6 @@ pub struct SomaShape {
     farthest: f64,
     stretch: DMat3,
     hidden: Option<Hidden>,
-}
-
-/// What the center of a mesh does not see: the surface turns away there, and the shape holds what is outside of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hidden {
-    /// Share of the shape's volume that is outside of the mesh.
-    pub share: f64,
-    /// Where it is deepest (µm).
-    pub place: DVec3,
-}
-
-/// Why a surface of triangles is not taken as a soma's. Places are in the coordinates of the surface (µm).
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SomaMeshError {
-    /// There are fewer than four triangles with an area.
-    #[error("it has no surface: at least four triangles are needed")]
-    Empty,
-    /// A triangle names a vertex that is not there or not finite.
-    #[error("vertex {index} (counted from 0) is missing or not finite")]
-    BadVertex {
-        /// The vertex.
-        index: u32,
-    },
-    /// Too much of it is open.
-    #[error(
-        "it goes around nothing: {:.0} % of the directions from its middle meet no triangle: close it",
-        100.0 * share
-    )]
-    Open {
-        /// Share of all directions.
-        share: f64,
-    },
-    /// No point within sees enough of it.
-    #[error(
-        "it is not star-shaped: seen from its middle it holds {:.0} % of outside, most of it near \
-         ({:.2}, {:.2}, {:.2}) µm: cut off what belongs to neurites there",
-        100.0 * .0.share, .0.place.x, .0.place.y, .0.place.z
-    )]
-    NotStarShaped(Hidden),
 }
 
 #[derive(Clone, Debug, PartialEq)]

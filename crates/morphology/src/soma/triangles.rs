@@ -14,7 +14,6 @@ use std::f64::consts::FRAC_2_PI;
 use glam::DVec3;
 
 use super::directions::{Directions, place_on_cube};
-use super::shape::{Hidden, SomaMeshError};
 
 /// Grid cells along an edge of the cube of directions.
 const CELLS: u32 = 44;
@@ -29,6 +28,46 @@ const MAX_OPEN: f64 = 0.2;
 const STEPS: u32 = 200;
 /// Crossings nearer to each other than this share of their distance are one, at an edge between triangles.
 const ONE_CROSSING: f64 = 1e-9;
+
+/// What the center of a mesh does not see: the surface turns away there, and the shape holds what is outside of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hidden {
+    /// Share of the shape's volume that is outside of the mesh.
+    pub share: f64,
+    /// Where it is deepest (µm).
+    pub place: DVec3,
+}
+
+/// Why a surface of triangles is not taken as a soma's. Places are in the coordinates of the surface (µm).
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SomaMeshError {
+    /// There are fewer than four triangles with an area.
+    #[error("it has no surface: at least four triangles are needed")]
+    Empty,
+    /// A triangle names a vertex that is not there or not finite.
+    #[error("vertex {index} (counted from 0) is missing or not finite")]
+    BadVertex {
+        /// The vertex.
+        index: u32,
+    },
+    /// Too much of it is open.
+    #[error(
+        "it goes around nothing: {:.0} % of the directions from its middle meet no triangle: close it",
+        100.0 * share
+    )]
+    Open {
+        /// Share of all directions.
+        share: f64,
+    },
+    /// No point within sees enough of it.
+    #[error(
+        "it is not star-shaped: seen from its middle it holds {:.0} % of outside, most of it near \
+         ({:.2}, {:.2}, {:.2}) µm: cut off what belongs to neurites there",
+        100.0 * .0.share, .0.place.x, .0.place.y, .0.place.z
+    )]
+    NotStarShaped(Hidden),
+}
 
 /// Distances by direction.
 #[derive(Clone, Debug, PartialEq)]
