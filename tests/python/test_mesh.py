@@ -131,7 +131,7 @@ def test_no_option_of_the_command_is_missing() -> None:
     # In Python several meshes are one list.
     drawing |= {"mesh", "meshes"}
     # The command has no numbers of one's own.
-    drawing |= {"values", "title", "unit"}
+    drawing |= {"values", "times", "title", "unit"}
     # Groups of the others.
     drawing |= {"camera", "scene", "markers"}
     for command, function, other in [

@@ -92,7 +92,7 @@ pub(crate) struct MeshArgs {
     )]
     pub(crate) min_edge: Option<f64>,
     /// With --isotropic: how many times F radii long edges along neurites may be [default: 1; with
-    /// --simulation 3]
+    /// --simulation 2.6]
     #[arg(
         long,
         value_name = "A",
@@ -118,7 +118,7 @@ pub(crate) struct MeshArgs {
     pub(crate) radius_factor: f64,
     #[command(flatten)]
     pub(crate) radius: RadiusArgs,
-    /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 3 --radii equal-area,
+    /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 2.6 --radii equal-area,
     /// or an error that says where it fails
     #[arg(long, help_heading = "Crossings")]
     pub(crate) simulation: bool,
