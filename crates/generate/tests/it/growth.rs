@@ -290,7 +290,9 @@ fn no_stage_takes_the_square_of_what_it_is_given() {
             1_000,
             meshed(),
         ),
-        ("branches all around", branches_all_around, 1_000, meshed()),
+        // Of fewer no tube looks inside out, and none is looked at closely: 1,000 take 0.18 billion instructions, 2,000 take
+        // 1.44, 4,000 take 3.0 and 8,000 take 6.4.
+        ("branches all around", branches_all_around, 2_000, meshed()),
         (
             "branches in one direction",
             branches_in_one_direction,
