@@ -1,11 +1,9 @@
 //! Numbers of one's own over time: a recording that is in memory, of cells that need no circuit.
 
-use std::collections::HashMap;
-
 use neurotess_circuit::TimeAxis;
-use neurotess_mesh::{Role, TracingPoint};
 use neurotess_render::color::category;
 
+use crate::own_values::on_mesh;
 use crate::report_frame::ReportFrame;
 use crate::scheme::Cell;
 
@@ -93,24 +91,10 @@ impl Memory {
     }
 }
 
-/// Columns of the points of a cell's mesh, as color keys. Points have the file's numbers there, which may repeat in other
-/// sections.
+/// Columns of the points of a cell's mesh, as color keys.
 fn keys(cell: &Cell<'_>, series: &CellSeries) -> Vec<u32> {
-    let morphology = cell.morphology;
-    let mut of_sample: HashMap<(usize, i32), Option<u32>> = HashMap::new();
-    for (index, section) in morphology.sections.iter().enumerate() {
-        for point in section.range() {
-            let sample = i32::try_from(morphology.sample_ids[point]).unwrap_or(i32::MAX);
-            of_sample.insert((index, sample), series.points[point]);
-        }
-    }
-    let column = |point: &TracingPoint| match (point.role, point.section.index()) {
-        (Role::Soma, _) => series.soma,
-        (_, Some(section)) => *of_sample.get(&(section, point.sample.0))?,
-        (_, None) => None,
-    };
-    let points = cell.mesh.tracing.iter();
-    points
-        .map(|point| column(point).unwrap_or(category(0)))
+    let columns = on_mesh(cell, &series.points, series.soma, None).into_iter();
+    columns
+        .map(|column| column.unwrap_or(category(0)))
         .collect()
 }

@@ -32,7 +32,9 @@ impl OwnValues {
     /// `range`, or the least and the greatest.
     pub fn spread(&self, cells: &[Cell<'_>], range: Option<[f32; 2]>) -> (Vec<Vec<f32>>, [f32; 2]) {
         let pairs = cells.iter().zip(&self.cells);
-        let shown: Vec<Vec<f32>> = pairs.map(|(cell, values)| on_cell(cell, values)).collect();
+        let shown: Vec<Vec<f32>> = pairs
+            .map(|(cell, values)| on_mesh(cell, &values.points, values.soma, f32::NAN))
+            .collect();
         let finite = || shown.iter().flatten().copied().filter(|v| v.is_finite());
         let [low, high] = range.unwrap_or_else(|| {
             let least = finite().reduce(f32::min).unwrap_or(0.0);
@@ -55,25 +57,25 @@ pub fn by_values(cells: &[Cell<'_>], values: &OwnValues, scheme: &ColorScheme) -
     scheme.scaled(keys.collect(), &values.title, &values.unit, [low, high])
 }
 
-/// The number of each tracing point of a cell's mesh. Points have the file's numbers there, which may repeat in other
-/// sections.
-fn on_cell(cell: &Cell<'_>, values: &CellValues) -> Vec<f32> {
+/// What each tracing point of a cell's mesh has, of what the points of its tracing and its somata have; `none` where the mesh
+/// has none of either. Points have the file's numbers there, which may repeat in other sections.
+pub(crate) fn on_mesh<T: Copy>(cell: &Cell<'_>, points: &[T], soma: T, none: T) -> Vec<T> {
     let morphology = cell.morphology;
-    let mut of_sample: HashMap<(usize, i32), f32> = HashMap::new();
+    let mut of_sample: HashMap<(usize, i32), T> = HashMap::new();
     for (index, section) in morphology.sections.iter().enumerate() {
         for point in section.range() {
             // Meshes have no larger numbers.
             let sample = i32::try_from(morphology.sample_ids[point]).unwrap_or(i32::MAX);
-            of_sample.insert((index, sample), values.points[point]);
+            of_sample.insert((index, sample), points[point]);
         }
     }
     let of_point = |point: &TracingPoint| match (point.role, point.section.index()) {
-        (Role::Soma, _) => values.soma,
+        (Role::Soma, _) => soma,
         (_, Some(section)) => {
-            let value = of_sample.get(&(section, point.sample.0));
-            value.copied().unwrap_or(f32::NAN)
+            let own = of_sample.get(&(section, point.sample.0));
+            own.copied().unwrap_or(none)
         }
-        (_, None) => f32::NAN,
+        (_, None) => none,
     };
     cell.mesh.tracing.iter().map(of_point).collect()
 }

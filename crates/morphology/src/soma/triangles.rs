@@ -17,7 +17,7 @@ use super::directions::{Directions, place_on_cube};
 
 /// Grid cells along an edge of the cube of directions.
 const CELLS: u32 = 44;
-/// Cells along an edge of the cube that triangles are sorted into.
+/// Cells along an edge of the cube that triangles are sorted into: 6° wide, a few triangles of a soma's mesh in each.
 const BINS: u32 = 16;
 /// Share of what is within the outermost crossings that may be outside of the mesh: of more, the distances describe
 /// another body. Two knobs on necks have 0.6 %, a tube bent into an S 15 %.
