@@ -47,6 +47,11 @@ pub(crate) fn test(lane: Lane, counts: &mut Counts) -> anyhow::Result<String> {
             "-q",
             "-p",
             "no:cacheprovider",
+            // As many at once as there are processors; one that is free takes from those that are not.
+            "-n",
+            "auto",
+            "--dist",
+            "worksteal",
             "tests/python",
         ])
         .current_dir(root())

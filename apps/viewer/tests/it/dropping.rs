@@ -148,7 +148,7 @@ fn a_session_is_dropped() {
     assert_eq!(names(&mut other).len(), 2, "nothing is lost");
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn files_held_over_the_window_are_announced() {
     let mut window = with_samples(&[Kind::Star]);
     window.input_mut().hovered_files = vec![HoveredFile::default(); 3];

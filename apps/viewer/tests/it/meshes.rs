@@ -189,7 +189,7 @@ fn sessions_and_saved_pictures_have_them() {
     assert!(opened[0].file.ends_with("region.obj"));
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
 fn what_cannot_be_read_is_told_and_tried_again() {
     let (mut window, folder, file) = with_file();
     let bad = folder.path().join("bad.ply");
