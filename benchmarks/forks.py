@@ -2,6 +2,8 @@
 
     python forks.py measure --bin DIR [--before DIR] FILES...
     python forks.py sheets --bin DIR [--before DIR] --out DIR FILES...
+    python forks.py random --bin DIR [--before DIR] --out DIR [--count 60] [--seed 1] FILES...
+    python forks.py hard --bin DIR [--before DIR] --out DIR [--count 12] FILES...
 
 `measure` looks at the surface of level 8 within three radii of each fork: the angles between neighboring facets,
 and the share of the area whose normal is more than 30 degrees off that of the branches' round cones, blended
@@ -10,6 +12,10 @@ cell and of all forks. A perfect surface has a share above zero, too, where a tr
 
 `sheets` draws every fork within 60 µm of the soma from both sides, and the soma, 1600 x 1200, and puts them in one
 picture for each cell; with --before, beside what that build draws.
+
+`random` draws so many forks of all files, each as likely as any other; `hard` those whose share that is off is largest in the
+build before, at most three of a cell. Twelve make a sheet, each from one side, with --before beside what that build draws; a
+list says which they are.
 """
 
 import argparse
@@ -29,6 +35,8 @@ FOLLOWED = 7.5
 OFF = np.cos(np.radians(30))
 # µm from the soma within which forks are drawn.
 NEAR = 60.0
+# Forks in a sheet of `random` and `hard`.
+PER_SHEET = 12
 
 
 class Tracing:
@@ -124,7 +132,7 @@ def own_facets(tracing, fork, branches, centers, candidates):
 
 
 def figures(neurotess, file, folder):
-    """Angles (degrees) between facets near forks, and for each fork the share of area that is off."""
+    """Angles (degrees) between facets near forks, shares of area that are off, and the forks that these are of."""
     tracing = Tracing(neurotess, file, folder)
     run(neurotess, "mesh", file, "--level", 8, "-o", folder / "mesh.ply")
     mesh = trimesh.load(folder / "mesh.ply", process=False)
@@ -134,7 +142,7 @@ def figures(neurotess, file, folder):
     areas = np.linalg.norm(normals, axis=1)
     normals /= np.maximum(areas, 1e-30)[:, None]
     tree = cKDTree(centers)
-    angles, shares = [np.zeros(0)], []
+    angles, shares, forks = [np.zeros(0)], [], []
     for fork in tracing.forks():
         radius = tracing.radius(fork)
         thinnest = min(tracing.radii[child] for child in tracing.children[fork])
@@ -153,7 +161,8 @@ def figures(neurotess, file, folder):
         slope /= np.maximum(np.linalg.norm(slope, axis=1), 1e-30)[:, None]
         is_off = (normals[facets] * slope).sum(1) < OFF
         shares.append(areas[facets][is_off].sum() / areas[facets].sum())
-    return np.concatenate(angles), np.array(shares)
+        forks.append(fork)
+    return np.concatenate(angles), np.array(shares), forks
 
 
 def between(faces, normals):
@@ -174,9 +183,56 @@ def measure(arguments):
     with tempfile.TemporaryDirectory() as folder:
         for file in arguments.files:
             for build, of_build in zip(builds, found):
-                of_build.append(figures(build / "neurotess", file, Path(folder)))
+                of_build.append(figures(build / "neurotess", file, Path(folder))[:2])
             print(row(file.stem[:24], [of_build[-1] for of_build in found]), flush=True)
     print(row("all", [tuple(map(np.concatenate, zip(*of_build))) for of_build in found]))
+
+
+def chosen(arguments):
+    """Sheets of forks of many cells, and their list."""
+    builds = [build for build in (arguments.before, arguments.bin) if build]
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    count = arguments.count or {"random": 60, "hard": 12}[arguments.what]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        forks = {"random": at_random, "hard": the_worst}[arguments.what](builds[0], arguments, count, folder)
+        tiles = []
+        for number, (file, fork, told) in enumerate(forks, 1):
+            tracing = Tracing(arguments.bin / "neurotess", file, folder)
+            view = next(views(tracing, fork))
+            tiles.append([picture(build / "neurotess", file, view, folder) for build in builds])
+            place = ", ".join(f"{x:.1f}" for x in tracing.points[fork])
+            print(f"{number}: {file.stem} at {place}{told}", flush=True)
+    for first in range(0, len(tiles), PER_SHEET):
+        across = 3
+        rows = tiles[first : first + PER_SHEET]
+        width, height = rows[0][0].size
+        size = (width * len(builds) * across, height * -(-len(rows) // across))
+        sheet = Image.new("RGB", size, "white")
+        for place, pictures in enumerate(rows):
+            for build, one in enumerate(pictures):
+                x = (place % across * len(builds) + build) * width
+                sheet.paste(one, (x, place // across * height))
+        sheet.save(arguments.out / f"{arguments.what}-{first // PER_SHEET + 1}.png")
+
+
+def at_random(_, arguments, count, folder):
+    """Forks of all files, each as likely as any other."""
+    neurotess = arguments.bin / "neurotess"
+    all_forks = [(file, fork, "") for file in arguments.files for fork in Tracing(neurotess, file, folder).forks()]
+    picked = np.random.default_rng(arguments.seed).choice(len(all_forks), min(count, len(all_forks)), replace=False)
+    return [all_forks[number] for number in sorted(picked)]
+
+
+def the_worst(build, arguments, count, folder):
+    """Forks with the largest shares off of a build, at most three of a cell."""
+    worst = []
+    for file in arguments.files:
+        _, shares, forks = figures(build / "neurotess", file, folder)
+        order = np.argsort(shares)[::-1][:3]
+        worst += [(shares[n], file, forks[n]) for n in order]
+    worst.sort(key=lambda one: -one[0])
+    return [(file, fork, f", {100 * share:.0f} % off") for share, file, fork in worst[:count]]
 
 
 def row(name, found):
@@ -216,35 +272,44 @@ def cameras(neurotess, file, folder):
     yield [(tracing.center + side * ahead, tracing.center, np.array([0.0, 1.0, 0.0])) for side in (1, -1)]
     distance = lambda fork: np.linalg.norm(tracing.points[fork] - tracing.center)
     for fork in sorted((f for f in tracing.forks() if distance(f) < NEAR), key=distance):
-        radius, at = tracing.radius(fork), tracing.points[fork]
-        ways = [tracing.points[branch[-1][1]] - at for branch in tracing.branches(fork, 4 * radius)[1:3]]
-        first, second = [way / max(np.linalg.norm(way), 1e-9) for way in ways]
-        across = np.cross(first, second)
-        if np.linalg.norm(across) < 0.05:
-            across = np.cross(first, [0.3, 0.5, 0.8])
-        across /= np.linalg.norm(across)
-        up = first + second if np.linalg.norm(first + second) > 0.1 else np.cross(across, first)
-        target = at + 0.5 * radius * (first + second)
-        slanted = 0.35 * np.cross(across, up / np.linalg.norm(up))
-        yield [(target + 12 * radius * (side * across + slanted), target, up) for side in (1, -1)]
+        yield list(views(tracing, fork))
+
+
+def views(tracing, fork):
+    """A fork from both sides (eye, target, up)."""
+    radius, at = tracing.radius(fork), tracing.points[fork]
+    ways = [tracing.points[branch[-1][1]] - at for branch in tracing.branches(fork, 4 * radius)[1:3]]
+    first, second = [way / max(np.linalg.norm(way), 1e-9) for way in ways]
+    across = np.cross(first, second)
+    if np.linalg.norm(across) < 0.05:
+        across = np.cross(first, [0.3, 0.5, 0.8])
+    across /= np.linalg.norm(across)
+    up = first + second if np.linalg.norm(first + second) > 0.1 else np.cross(across, first)
+    target = at + 0.5 * radius * (first + second)
+    slanted = 0.35 * np.cross(across, up / np.linalg.norm(up))
+    for side in (1, -1):
+        yield target + 12 * radius * (side * across + slanted), target, up
 
 
 def picture(neurotess, file, view, folder):
     words = [f"--{name}=" + ",".join(f"{x:.4f}" for x in place) for name, place in zip(("eye", "target", "up"), view)]
-    run(neurotess, "render", file, "-o", folder / "view.png", "--size", "1600x1200", "--fov", 45, *words)
+    run(neurotess, "render", file, "-o", folder / "view.png", "--size", "1600x1200", "--fov", 45, "--no-legend", *words)
     with Image.open(folder / "view.png") as one:
         return one.convert("RGB").resize((640, 480), Image.Resampling.LANCZOS)
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("what", choices=["measure", "sheets"])
+    parser.add_argument("what", choices=["measure", "sheets", "random", "hard"])
     parser.add_argument("--bin", type=Path, required=True)
     parser.add_argument("--before", type=Path)
     parser.add_argument("--out", type=Path, default=Path("out/sheets"))
+    parser.add_argument("--count", type=int)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("files", nargs="+", type=Path)
     arguments = parser.parse_args()
-    {"measure": measure, "sheets": sheets}[arguments.what](arguments)
+    does = {"measure": measure, "sheets": sheets, "random": chosen, "hard": chosen}
+    does[arguments.what](arguments)
 
 
 if __name__ == "__main__":
