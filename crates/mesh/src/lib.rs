@@ -75,7 +75,10 @@ pub use measure::{Measure, measure, measure_surface};
 pub use parts::{Part, Parts};
 pub use placed::Placed;
 pub use quality::{Quality, quality};
-pub use read::{FilePosition, ReadError, read, read_as, read_bytes};
+pub use read::{
+    FilePosition, OwnAttribute, ReadError, read, read_as, read_bytes, read_bytes_with_attributes,
+    read_with_attributes,
+};
 pub use sound::{Extent, Soundness, Unsound};
 pub use surface::{Faces, Region, Surface, SurfaceMesh, SurfaceVertex, VertexAttribute};
 pub use table::{SurfaceTriangle, write_triangles};

@@ -7,7 +7,7 @@ import warnings
 
 from . import _neurotess
 from ._errors import NeurotessWarning
-from ._own import check_name, color_column, holds_own, own_column
+from ._own import check_name, color_column, holds_own, own_arrays, own_column
 from ._parts import Notice
 from ._packages import needed
 
@@ -289,8 +289,8 @@ class Mesh:
         ``materials=True`` gives faces of a GLB or OBJ the colors of their types, of an OBJ in an ``.mtl`` file beside it.
         Some programs then read a mesh for each type, none of which is closed.
 
-        PLY, VTU and GLB hold attributes of your own (`with_attribute`), as 32-bit numbers; in a GLB they are called like
-        ``_DISTANCE``. With the name of an attribute as `color`, vertices of a GLB have colors by its numbers (``COLOR_0``),
+        PLY, VTU and GLB hold attributes of your own (`with_attribute`), as 32-bit numbers, and `read_mesh` gives them back; in a
+        GLB they are called like ``_DISTANCE``. With the name of an attribute as `color`, vertices of a GLB have colors by its numbers (``COLOR_0``),
         which all programs show: of a `colormap`, whose ends are at the numbers of `range`. An attribute (v, 3) or (v, 4) of
         numbers from 0 to 1 is colors itself.
         """
@@ -385,8 +385,20 @@ def _floating(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def read_mesh(path: str | os.PathLike[str], *, format: str | None = None) -> Mesh:
-    """Reads a mesh file: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH."""
-    return Mesh(_neurotess.Surface.read(path, format), name=os.path.basename(os.fspath(path)))
+    """Reads a mesh file: PLY, OBJ, STL, GLB, OFF, VTU, MSH, POLY or SMESH.
+
+    Numbers that vertices have in PLY, VTU and GLB beside those of every mesh, as `Mesh.with_attribute` made them or
+    another program, are in `Mesh.attributes`: (v,) or (v, n), 32-bit floating-point numbers where these hold them,
+    else 64-bit ones. What is no letter or digit in a name is ``_``. In a GLB they are those that begin with ``_``.
+
+    >>> import neurotess as nt
+    >>> mesh = nt.mesh(nt.synth("granule", points=100), level=1)
+    >>> mesh.with_attribute("distance", mesh.path_distance).save("far.vtu")      # doctest: +SKIP
+    >>> nt.read_mesh("far.vtu").attributes["distance"].shape                     # doctest: +SKIP
+    (1234,)
+    """
+    surface, own = _neurotess.Surface.read(path, format)
+    return Mesh(surface, name=os.path.basename(os.fspath(path)), own=own_arrays(own))
 
 
 def check(mesh: Mesh | str | os.PathLike[str], *, merge: bool = False) -> dict[str, Any]:

@@ -40,6 +40,16 @@ def own_column(name: str, values: NDArray[Any]) -> tuple[str, int, NDArray[np.fl
     return name, components, np.ascontiguousarray(values, np.float32).reshape(-1)
 
 
+def own_arrays(columns: list[tuple[str, int, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    """What a file has, (v,) or (v, n) by name; a name that every mesh has for something else gets a ``_``."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, components, numbers in columns:
+        while name.lower() in TAKEN or name in arrays:
+            name += "_"
+        arrays[name] = numbers if components == 1 else numbers.reshape(-1, components)
+    return arrays
+
+
 def color_column(
     attributes: Mapping[str, NDArray[Any]],
     name: str,

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use neurotess::mesh::{self, Format, SurfaceMesh, Unit, VertexAttribute, Watched, measure_surface};
+use neurotess::mesh::{
+    self, Format, OwnAttribute, SurfaceMesh, Unit, VertexAttribute, Watched, measure_surface,
+};
 use neurotess::morphology::Morphology;
 use neurotess::recipe::{
     CellMesh, FileOptions, FileSurface, MeshOptions, MeshReport, SaveError, Spelling, Watch,
@@ -198,20 +200,26 @@ impl Surface {
         Self::new(py, Columns::of_arrays(vertices, faces))
     }
 
-    /// A mesh file.
+    /// A mesh file, and numbers of one's own that it has: name, components, and all numbers in a row, of 32 bits where these
+    /// hold them.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, format: Option<String>) -> PyResult<Self> {
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        format: Option<String>,
+    ) -> PyResult<(Self, Vec<OwnArray>)> {
         let format = format.map(|name| format_named(&name)).transpose()?;
         let file = path.display().to_string();
         let read = stoppable(py, None, &Stop::default(), move |stopped| {
-            let read = match format {
-                Some(format) => mesh::read_as(&path, format),
-                None => mesh::read(&path),
-            };
-            read.map(|surface| Columns::of(&surface, stopped))
+            let read = mesh::read_with_attributes(&path, format);
+            read.map(|(surface, own)| (Columns::of(&surface, stopped), own))
         })?;
         match read {
-            Ok(columns) => Self::new(py, columns.map_err(errors::bug)?),
+            Ok((columns, own)) => {
+                let surface = Self::new(py, columns.map_err(errors::bug)?)?;
+                let own: PyResult<_> = own.into_iter().map(|a| own_array(py, a)).collect();
+                Ok((surface, own?))
+            }
             Err(mesh::ReadError::Io(e)) => Err(errors::read_io(py, &file, &e)),
             Err(e) => {
                 let line = match e.place() {
@@ -353,6 +361,26 @@ impl Surface {
         }
         Self::new(py, slices.to_columns())
     }
+}
+
+/// Numbers of one's own as Python has them: name, components, and an array of all in a row.
+type OwnArray = (String, usize, Py<PyAny>);
+
+fn own_array(py: Python<'_>, attribute: OwnAttribute) -> PyResult<OwnArray> {
+    let OwnAttribute {
+        name,
+        components,
+        values,
+        single,
+    } = attribute;
+    let array = match single {
+        true => {
+            let values = values.into_iter().map(|value| value as f32).collect();
+            arrays::column(py, values)?.into_any()
+        }
+        false => arrays::column::<f64>(py, values)?.into_any(),
+    };
+    Ok((name, components, array))
 }
 
 fn unsaved(error: &SaveError) -> PyErr {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::own::{OwnAttribute, OwnColumns};
 use super::{FilePosition, ReadError, malformed};
 use crate::{Faces, SurfaceMesh, SurfaceVertex};
 
@@ -10,6 +11,7 @@ pub(super) struct Builder {
     positions: Vec<DVec3>,
     vertices: Vec<SurfaceVertex>,
     faces: Faces,
+    own: OwnColumns,
     /// Vertices and faces that a file of this size may hold: formats with references (glTF, VTU)
     /// could name the same bytes again and again.
     limit: usize,
@@ -29,9 +31,32 @@ impl Builder {
             positions: Vec::new(),
             vertices: Vec::new(),
             faces: Faces::default(),
+            own: OwnColumns::default(),
             limit: file_bytes.saturating_mul(PER_BYTE).min(u32::MAX as usize),
             highest: None,
         }
+    }
+
+    /// One that takes numbers of one's own, too.
+    pub(super) fn with_own(file_bytes: usize) -> Self {
+        let mut mesh = Self::new(file_bytes);
+        mesh.own.wanted = true;
+        mesh
+    }
+
+    /// Whether numbers of one's own are wanted.
+    pub(super) fn wants_own(&self) -> bool {
+        self.own.wanted
+    }
+
+    /// Adds numbers of one's own of the vertices from `first` on; see [`OwnColumns::add`].
+    pub(super) fn own(
+        &mut self,
+        at: FilePosition,
+        first: usize,
+        attribute: OwnAttribute,
+    ) -> Result<(), ReadError> {
+        self.own.add((first, at), attribute, self.limit)
     }
 
     pub(super) fn vertex_count(&self) -> usize {
@@ -89,6 +114,13 @@ impl Builder {
             what,
             remedy: "write its parts into the file one by one",
         })
+    }
+
+    /// The mesh with numbers of one's own.
+    pub(super) fn finish_with_own(mut self) -> Result<(SurfaceMesh, Vec<OwnAttribute>), ReadError> {
+        let own = std::mem::take(&mut self.own);
+        let own = own.finish(self.positions.len(), self.limit)?;
+        Ok((self.finish()?, own))
     }
 
     /// The mesh, with an origin if the positions need one.

@@ -8,10 +8,11 @@ use serde_json::Value;
 
 use super::builder::Builder;
 use super::lines::index;
+use super::own::OwnAttribute;
 use super::{FilePosition, ReadError, base64, malformed};
-use crate::{SurfaceMesh, SurfaceVertex};
+use crate::SurfaceVertex;
 
-pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
+pub(super) fn read(bytes: &[u8], mesh: &mut Builder) -> Result<(), ReadError> {
     let (json, binary) = if bytes.starts_with(b"glTF") {
         chunks(bytes)?
     } else {
@@ -34,9 +35,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
         root: &root,
         buffers,
     };
-    let mut mesh = Builder::new(bytes.len());
-    scene.read(&mut mesh)?;
-    mesh.finish()
+    scene.read(mesh)
 }
 
 /// The JSON and the binary chunk.
@@ -140,7 +139,10 @@ impl Scene<'_> {
                     let known = read.iter().find(|shared| shared.attributes == attributes);
                     let shared = match known {
                         Some(&shared) => shared,
-                        None => self.vertices(attributes, world_from_node, mesh)?,
+                        None => {
+                            let names = &shape["extras"]["attributes"];
+                            self.vertices((attributes, names), world_from_node, mesh)?
+                        }
                     };
                     if known.is_none() && read.len() < MAX_SHARED {
                         read.push(shared);
@@ -177,10 +179,11 @@ impl Scene<'_> {
             .collect()
     }
 
-    /// Reads the vertices of a primitive; none if they have no positions.
+    /// Reads the vertices of a primitive; none if they have no positions. `names`: those of numbers of one's own, by the
+    /// names that glTF has for them.
     fn vertices<'v>(
         &self,
-        attributes: &'v Value,
+        (attributes, names): (&'v Value, &Value),
         world_from_node: DMat4,
         mesh: &mut Builder,
     ) -> Result<Shared<'v>, ReadError> {
@@ -226,9 +229,51 @@ impl Scene<'_> {
             };
             mesh.vertex(FilePosition::File, position, vertex)?;
         }
-
+        if mesh.wants_own() {
+            self.own_numbers((attributes, names), mesh)?;
+        }
         shared.count = Some(positions.len());
         Ok(shared)
+    }
+
+    /// Reads numbers of one's own of the vertices that were read last. Colors and places in pictures are none.
+    fn own_numbers(
+        &self,
+        (attributes, names): (&Value, &Value),
+        mesh: &mut Builder,
+    ) -> Result<(), ReadError> {
+        let accessors = items(self.root, "accessors");
+        let of = |number: &Value| item(accessors, number.as_u64().unwrap_or(u64::MAX), "accessor");
+        let count_of = |accessor: &Value| accessor["count"].as_u64().unwrap_or(0) as usize;
+        let vertices = count_of(of(&attributes["POSITION"])?);
+        let first = mesh.vertex_count() - vertices;
+        for (name, number) in attributes.as_object().into_iter().flatten() {
+            let Some(plain) = name
+                .strip_prefix('_')
+                .filter(|_| !KEPT.contains(&&name[..]))
+            else {
+                continue;
+            };
+            let accessor = of(number)?;
+            let shape = accessor["type"].as_str().unwrap_or_default();
+            let Some(components) = SHAPES.iter().position(|known| *known == shape) else {
+                continue;
+            };
+            let (components, count) = (components + 1, count_of(accessor));
+            if count != vertices {
+                let found = format!("{count} numbers of {name} for {vertices} vertices");
+                return Err(malformed(FilePosition::File, found, "one for each"));
+            }
+            let own_name = names[name].as_str().map(str::to_owned);
+            let attribute = OwnAttribute {
+                name: own_name.unwrap_or_else(|| plain.to_lowercase()),
+                components,
+                values: self.numbers(number.as_u64().unwrap_or(u64::MAX), components)?,
+                single: accessor["componentType"] != UNSIGNED_INT,
+            };
+            mesh.own(FilePosition::File, first, attribute)?;
+        }
+        Ok(())
     }
 
     /// Reads the faces of a primitive.
@@ -357,6 +402,12 @@ impl Scene<'_> {
         Ok(numbers)
     }
 }
+
+/// Numbers of vertices that every mesh has.
+const KEPT: [&str; 4] = ["_TYPE", "_POINT", "_SECTION", "_RADIUS"];
+/// Types of accessors by their number of components.
+const SHAPES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
+const UNSIGNED_INT: u32 = 5125;
 
 const TRIANGLES: u64 = 4;
 const STRIP: u64 = 5;

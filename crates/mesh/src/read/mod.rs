@@ -2,7 +2,7 @@
 //!
 //! Whatever a file claims, memory grows with the bytes that are there: counts in headers are
 //! believed only when the data follow. Polygons of more than four corners become fans of triangles;
-//! attributes that our writers write are read back, others are skipped.
+//! attributes that our writers write are read back, and numbers of one's own where they are wanted.
 
 mod base64;
 mod builder;
@@ -13,6 +13,7 @@ mod msh2;
 mod numbers;
 mod obj;
 mod off;
+mod own;
 mod ply;
 mod regions;
 mod stl;
@@ -24,6 +25,8 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+use self::builder::Builder;
+pub use self::own::OwnAttribute;
 use crate::{Format, SurfaceMesh, UnknownFormat};
 
 /// Where in a file something is wrong.
@@ -124,28 +127,62 @@ pub fn read(path: &Path) -> Result<SurfaceMesh, ReadError> {
 
 /// Reads a mesh of a known format, whatever its name; see [`read`].
 pub fn read_as(path: &Path, format: Format) -> Result<SurfaceMesh, ReadError> {
+    read_bytes(&bytes_of(path)?, format)
+}
+
+/// Reads a mesh with numbers of one's own for its vertices, which PLY, VTU and GLB have: of a known format, or of that
+/// which the extension names. Else as [`read`].
+pub fn read_with_attributes(
+    path: &Path,
+    format: Option<Format>,
+) -> Result<(SurfaceMesh, Vec<OwnAttribute>), ReadError> {
+    let format = format.map_or_else(|| Format::from_extension(path), Ok)?;
+    read_bytes_with_attributes(&bytes_of(path)?, format)
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     // A device has no end, and a pipe that nobody writes to keeps whoever opens it waiting.
     if !std::fs::metadata(path)?.is_file() {
         let what = "it is a folder, a device or a pipe, not a regular file";
         return Err(io::Error::other(what).into());
     }
-    read_bytes(&std::fs::read(path)?, format)
+    Ok(std::fs::read(path)?)
 }
 
 /// Reads a mesh from the bytes of a file; see [`read`].
 pub fn read_bytes(bytes: &[u8], format: Format) -> Result<SurfaceMesh, ReadError> {
+    let built = |read: fn(&[u8], &mut Builder) -> Result<(), ReadError>| {
+        let mut mesh = Builder::new(bytes.len());
+        read(bytes, &mut mesh)?;
+        mesh.finish()
+    };
     match format {
-        Format::Ply => ply::read(bytes),
+        Format::Ply => built(ply::read),
         Format::Obj => obj::read(bytes),
         Format::Stl => stl::read(bytes),
-        Format::Glb => glb::read(bytes),
+        Format::Glb => built(glb::read),
         Format::Off => off::read(bytes),
-        Format::Vtu => vtu::read(bytes),
+        Format::Vtu => built(vtu::read),
         // The file says which version it is of.
         Format::Msh | Format::Msh2 => msh::read(bytes),
         Format::Poly => tetgen::read_poly(bytes),
         Format::Smesh => tetgen::read_smesh(bytes),
     }
+}
+
+/// Reads a mesh with numbers of one's own from the bytes of a file; see [`read_with_attributes`].
+pub fn read_bytes_with_attributes(
+    bytes: &[u8],
+    format: Format,
+) -> Result<(SurfaceMesh, Vec<OwnAttribute>), ReadError> {
+    let mut mesh = Builder::with_own(bytes.len());
+    match format {
+        Format::Ply => ply::read(bytes, &mut mesh)?,
+        Format::Glb => glb::read(bytes, &mut mesh)?,
+        Format::Vtu => vtu::read(bytes, &mut mesh)?,
+        other => return Ok((read_bytes(bytes, other)?, Vec::new())),
+    }
+    mesh.finish_with_own()
 }
 
 /// A [`ReadError::Malformed`].

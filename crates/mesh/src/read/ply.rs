@@ -4,13 +4,13 @@ use glam::{DVec3, Vec3};
 
 use super::builder::Builder;
 use super::lines::{Lines, index, number, whole, words};
+use super::own::{MOST_COMPONENTS, OwnAttribute};
 use super::{FilePosition, ReadError, malformed, shown};
-use crate::{SurfaceMesh, SurfaceVertex};
+use crate::SurfaceVertex;
 
-pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
+pub(super) fn read(bytes: &[u8], mesh: &mut Builder) -> Result<(), ReadError> {
     let mut lines = Lines::new(bytes);
     let header = Header::read(&mut lines)?;
-    let mut mesh = Builder::new(bytes.len());
     match header.encoding {
         Encoding::Text => {
             let mut text = Text {
@@ -18,7 +18,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
                 lines,
             };
             for element in &header.elements {
-                rows(element, &mut text, &mut mesh)?;
+                rows((element, &header.vectors), &mut text, mesh)?;
             }
         }
         Encoding::Little | Encoding::Big => {
@@ -29,16 +29,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
                 big,
             };
             for element in &header.elements {
-                rows(element, &mut binary, &mut mesh)?;
+                rows((element, &header.vectors), &mut binary, mesh)?;
             }
         }
     }
-    mesh.finish()
+    Ok(())
 }
 
 struct Header {
     encoding: Encoding,
     elements: Vec<Element>,
+    /// Names of numbers of one's own that several properties have together, and how many: a comment of our writer's.
+    vectors: Vec<(String, usize)>,
 }
 
 enum Encoding {
@@ -79,6 +81,7 @@ impl Header {
         }
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut vectors = Vec::new();
         while let Some(line) = lines.next() {
             let at = lines.place();
             let mut words = words(line);
@@ -100,9 +103,11 @@ impl Header {
                     return Ok(Self {
                         encoding: encoding.ok_or_else(missing)?,
                         elements,
+                        vectors,
                     });
                 }
-                b"" | b"comment" | b"obj_info" => {}
+                b"comment" => vectors.extend(vector(words)),
+                b"" | b"obj_info" => {}
                 word => return Err(malformed(at, shown(word), "a word of a PLY header")),
             }
         }
@@ -126,6 +131,16 @@ impl Header {
     }
 }
 
+/// What a comment of our writer's says of several properties: their name together, and how many.
+fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<(String, usize)> {
+    words.next().filter(|word| *word == b"components:")?;
+    let name = std::str::from_utf8(words.next()?).ok()?;
+    let count = std::str::from_utf8(words.next()?).ok()?.parse().ok()?;
+    (2..=MOST_COMPONENTS)
+        .contains(&count)
+        .then(|| (name.to_owned(), count))
+}
+
 impl Property {
     fn read<'a>(
         mut words: impl Iterator<Item = &'a [u8]>,
@@ -147,6 +162,11 @@ impl Property {
 }
 
 impl Kind {
+    /// Whether an `f32` holds all numbers of the type.
+    fn is_single(self) -> bool {
+        !matches!(self, Self::I32 | Self::U32 | Self::F64)
+    }
+
     fn read(word: &[u8], at: FilePosition) -> Result<Self, ReadError> {
         Ok(match word {
             b"char" | b"int8" => Self::I8,
@@ -247,7 +267,7 @@ const KEPT: [&[u8]; 10] = [
 
 /// Reads the rows of one element.
 fn rows(
-    element: &Element,
+    (element, vectors): (&Element, &[(String, usize)]),
     numbers: &mut impl Numbers,
     mesh: &mut Builder,
 ) -> Result<(), ReadError> {
@@ -272,16 +292,25 @@ fn rows(
             "these properties",
         ));
     }
+    let kept = slots.iter().map(Option::is_some);
+    let mut own = match vertex && mesh.wants_own() {
+        true => own_properties(&element.properties, kept.collect()),
+        false => Vec::new(),
+    };
+    let first = mesh.vertex_count();
     let mut corners = Vec::new();
     for _ in 0..element.count {
         let at = numbers.place();
         let mut slot = [0.0; KEPT.len()];
         let mut has_corners = false;
+        let mut own_values = own.iter_mut();
         for (property, kept) in element.properties.iter().zip(&slots) {
             let Some(list) = property.list else {
                 let value = numbers.next(property.kind)?;
                 if let Some(kept) = *kept {
                     slot[kept] = value;
+                } else if let Some(own) = own_values.next() {
+                    own.values.push(value);
                 }
                 continue;
             };
@@ -304,7 +333,50 @@ fn rows(
             mesh.face(at, &corners)?;
         }
     }
+    let at = numbers.place();
+    for attribute in together(own, vectors) {
+        mesh.own(at, first, attribute)?;
+    }
     Ok(())
+}
+
+/// The properties of vertices that are numbers of one's own: all that are not kept, but for lists.
+fn own_properties(properties: &[Property], kept: Vec<bool>) -> Vec<OwnAttribute> {
+    let own = properties.iter().zip(kept);
+    let own = own.filter(|(property, kept)| !kept && property.list.is_none());
+    own.map(|(property, _)| OwnAttribute {
+        name: String::from_utf8_lossy(&property.name).into_owned(),
+        components: 1,
+        values: Vec::new(),
+        single: property.kind.is_single(),
+    })
+    .collect()
+}
+
+/// Joins properties that one attribute has together: `direction_0`, `direction_1`, `direction_2`.
+fn together(own: Vec<OwnAttribute>, vectors: &[(String, usize)]) -> Vec<OwnAttribute> {
+    let mut joined = Vec::with_capacity(own.len());
+    let mut rest = own.into_iter();
+    while !rest.as_slice().is_empty() {
+        let vector = vectors.iter().find(|(name, count)| {
+            let mut parts = (0..*count).zip(rest.as_slice());
+            rest.len() >= *count && parts.all(|(n, part)| part.name == format!("{name}_{n}"))
+        });
+        let Some((name, count)) = vector else {
+            joined.extend(rest.next());
+            continue;
+        };
+        let parts: Vec<OwnAttribute> = rest.by_ref().take(*count).collect();
+        let vertices = 0..parts[0].values.len();
+        let values = vertices.flat_map(|vertex| parts.iter().map(move |part| part.values[vertex]));
+        joined.push(OwnAttribute {
+            name: name.clone(),
+            components: *count,
+            values: values.collect(),
+            single: parts.iter().all(|part| part.single),
+        });
+    }
+    joined
 }
 
 fn push_vertex(mesh: &mut Builder, at: FilePosition, slot: &[f64; 10]) -> Result<(), ReadError> {

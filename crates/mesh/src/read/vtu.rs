@@ -6,17 +6,17 @@ use glam::{DVec3, Vec3};
 
 use super::builder::Builder;
 use super::lines::{index, number, words};
+use super::own::{MOST_COMPONENTS, OwnAttribute};
 use super::xml::{Tag, find};
 use super::{FilePosition, ReadError, base64, malformed};
-use crate::{SurfaceMesh, SurfaceVertex};
+use crate::SurfaceVertex;
 
-pub(super) fn read(bytes: &[u8]) -> Result<SurfaceMesh, ReadError> {
+pub(super) fn read(bytes: &[u8], mesh: &mut Builder) -> Result<(), ReadError> {
     let file = File::read(bytes)?;
-    let mut mesh = Builder::new(bytes.len());
     for piece in &file.pieces {
-        file.read_piece(piece, &mut mesh)?;
+        file.read_piece(piece, mesh)?;
     }
-    mesh.finish()
+    Ok(())
 }
 
 struct File<'a> {
@@ -40,6 +40,8 @@ type Piece<'a> = HashMap<String, Array<'a>>;
 struct Array<'a> {
     kind: &'a str,
     format: &'a str,
+    /// Numbers of a point.
+    components: usize,
     offset: Option<usize>,
     /// Offset of the text within the tags.
     text: usize,
@@ -84,6 +86,10 @@ impl<'a> File<'a> {
                     let array = Array {
                         kind: tag.get("type").unwrap_or_default(),
                         format: tag.get("format").unwrap_or("ascii"),
+                        components: tag
+                            .get("NumberOfComponents")
+                            .map_or(Some(1), |count| count.trim().parse().ok())
+                            .unwrap_or(0),
                         offset: tag.get("offset").and_then(|offset| offset.parse().ok()),
                         text: tag.end,
                     };
@@ -151,6 +157,9 @@ impl<'a> File<'a> {
             };
             mesh.vertex(points.at, three(&points, n), vertex)?;
         }
+        if mesh.wants_own() {
+            self.read_own(piece, first as usize, mesh)?;
+        }
 
         let (corners, ends) = (need("Cells/connectivity")?, need("Cells/offsets")?);
         let types = need("Cells/types")?;
@@ -181,6 +190,39 @@ impl<'a> File<'a> {
             }
             mesh.face(corners.at, &cell)?;
             start = end;
+        }
+        Ok(())
+    }
+
+    /// Reads numbers of one's own of the points of a piece; texts and matrices are skipped.
+    fn read_own(
+        &self,
+        piece: &Piece<'_>,
+        first: usize,
+        mesh: &mut Builder,
+    ) -> Result<(), ReadError> {
+        let own = piece.iter().filter_map(|(name, array)| {
+            let name = name.strip_prefix("PointData/")?;
+            let single = is_single(array.kind)?;
+            let own = !KEPT.contains(&name) && (1..=MOST_COMPONENTS).contains(&array.components);
+            own.then_some((array, name, single))
+        });
+        let mut own: Vec<_> = own.collect();
+        own.sort_by_key(|(array, ..)| array.text);
+        for (array, name, single) in own {
+            let Numbers { values, at } = self.numbers(array)?;
+            let (components, points) = (array.components, mesh.vertex_count() - first);
+            if values.len() != components * points {
+                let found = format!("{} numbers of '{name}' for {points} points", values.len());
+                return Err(malformed(at, found, "as many as NumberOfComponents says"));
+            }
+            let attribute = OwnAttribute {
+                name: name.to_owned(),
+                components,
+                values,
+                single,
+            };
+            mesh.own(at, first, attribute)?;
         }
         Ok(())
     }
@@ -300,6 +342,18 @@ impl<'a> File<'a> {
             }
         };
         Ok(Numbers { values, at })
+    }
+}
+
+/// Arrays of points that every mesh has.
+const KEPT: [&str; 5] = ["Normals", "type", "point", "section", "radius"];
+
+/// Whether an `f32` holds all numbers of a type; none if it has no numbers.
+fn is_single(kind: &str) -> Option<bool> {
+    match kind {
+        "Int8" | "UInt8" | "Int16" | "UInt16" | "Float32" => Some(true),
+        "Int32" | "UInt32" | "Int64" | "UInt64" | "Float64" => Some(false),
+        _ => None,
     }
 }
 

@@ -45,12 +45,24 @@ pub struct GlbNode {
 /// Types of accessors by their number of components.
 const SHAPES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
 
-/// A name as glTF wants those that are not its own.
-fn gltf_name(name: &str) -> String {
-    match name {
-        "COLOR_0" => name.into(),
-        name => format!("_{}", name.to_uppercase()),
+/// A name as glTF wants those that are not its own, unless another attribute has it.
+fn gltf_name(name: &str, others: &[OwnSpan]) -> String {
+    if name == "COLOR_0" {
+        return name.into();
     }
+    let mut upper = format!("_{}", name.to_uppercase());
+    while others.iter().any(|other| other.gltf_name == upper) {
+        upper.push('_');
+    }
+    upper
+}
+
+/// Where numbers of one's own lie in the binary chunk.
+struct OwnSpan {
+    name: String,
+    gltf_name: String,
+    components: usize,
+    start: u64,
 }
 
 /// Where the arrays of a surface lie in the binary chunk.
@@ -61,8 +73,8 @@ struct Span {
     first_index: u64,
     /// Of positions.
     bounds: [Vec3; 2],
-    /// Numbers of one's own: name, components, where they begin.
-    own: Vec<(String, usize, u64)>,
+    /// Numbers of one's own.
+    own: Vec<OwnSpan>,
     /// Indices of each type, in the order of the primitives; none if there are no materials.
     kinds: BTreeMap<i32, u64>,
 }
@@ -96,12 +108,16 @@ pub(super) fn write_all(
         let kinds = (i32::MIN..).take(if materials { ROOM } else { 0 });
         let first_vertex = binary;
         binary += STRIDE * vertices + 12 * faces;
-        let own = surface.attributes().iter().map(|a| {
-            let first = binary;
+        let mut own = Vec::new();
+        for a in surface.attributes() {
+            own.push(OwnSpan {
+                name: a.name.to_owned(),
+                gltf_name: gltf_name(a.name, &own),
+                components: a.components,
+                start: binary,
+            });
             binary += 4 * a.values.len() as u64;
-            (gltf_name(a.name), a.components, first)
-        });
-        let own = own.collect();
+        }
         spans.push(Span {
             vertices,
             first_vertex,
@@ -180,10 +196,10 @@ fn write_surface(
     )?;
     span.bounds = bounds.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut bytes = Vec::new();
-    for (attribute, (_, _, first)) in surface.attributes().iter().zip(&span.own) {
+    for (attribute, own) in surface.attributes().iter().zip(&span.own) {
         bytes.clear();
         push_numbers(&mut bytes, attribute.values);
-        file.put(&mut (start + first), &bytes)?;
+        file.put(&mut (start + own.start), &bytes)?;
     }
     span.kinds.clear();
     if materials {
@@ -307,7 +323,7 @@ fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
     let own = |s: &Span| {
         s.own
             .iter()
-            .map(|(_, n, _)| 4 * *n as u64 * s.vertices)
+            .map(|own| 4 * own.components as u64 * s.vertices)
             .sum::<u64>()
     };
     let bytes: u64 = spans
@@ -379,15 +395,21 @@ impl Arrays {
             "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
             "_SECTION": first + 4, "_RADIUS": first + 5,
         });
-        for (name, components, start) in &span.own {
-            attributes[name] = json!(self.accessors.len());
+        // Names whose letters glTF's do not tell.
+        let mut names = serde_json::Map::new();
+        for own in &span.own {
+            let gltf_name = &own.gltf_name;
+            attributes[gltf_name] = json!(self.accessors.len());
+            if gltf_name.starts_with('_') && own.name != gltf_name[1..].to_lowercase() {
+                names.insert(gltf_name.clone(), json!(own.name));
+            }
             self.accessors.push(json!({
                 "bufferView": self.views.len(), "componentType": FLOAT, "count": span.vertices,
-                "type": SHAPES[components.clamp(&1, &4) - 1],
+                "type": SHAPES[own.components.clamp(1, 4) - 1],
             }));
             self.views.push(json!({
-                "buffer": 0, "byteOffset": start,
-                "byteLength": 4 * *components as u64 * span.vertices, "target": ARRAY_BUFFER,
+                "buffer": 0, "byteOffset": own.start,
+                "byteLength": 4 * own.components as u64 * span.vertices, "target": ARRAY_BUFFER,
             }));
         }
         let [low, high] = span.bounds;
@@ -425,7 +447,11 @@ impl Arrays {
         } else {
             primitives.push(primitive(None, None));
         }
-        self.meshes.push(json!({ "primitives": primitives }));
+        let mut mesh = json!({ "primitives": primitives });
+        if !names.is_empty() {
+            mesh["extras"] = json!({ "attributes": names });
+        }
+        self.meshes.push(mesh);
         Some(self.meshes.len() - 1)
     }
 

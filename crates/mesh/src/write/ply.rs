@@ -77,6 +77,13 @@ fn of_vertex<'a>(attribute: &VertexAttribute<'a>, vertex: usize) -> &'a [f32] {
     &attribute.values[first..first + attribute.components]
 }
 
+/// Says which properties belong together: PLY itself has no vectors.
+fn own_comments(own: &[VertexAttribute<'_>]) -> String {
+    let several = own.iter().filter(|a| a.components > 1);
+    let comments = several.map(|a| format!("comment components: {} {}\n", a.name, a.components));
+    comments.collect()
+}
+
 /// The properties of numbers of one's own: several of a vertex are counted.
 fn own_properties(own: &[VertexAttribute<'_>]) -> String {
     let names = own.iter().flat_map(|a| {
@@ -99,11 +106,13 @@ fn header(surface: &dyn Surface, double: bool) -> String {
         "int"
     };
     let own = own_properties(surface.attributes());
+    let comments = own_comments(surface.attributes());
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\
          comment neurotess\n\
          comment units: {unit}\n\
+         {comments}\
          element vertex {vertices}\n\
          property {real} x\nproperty {real} y\nproperty {real} z\n\
          property float nx\nproperty float ny\nproperty float nz\n\

@@ -4,9 +4,10 @@
 
 use std::time::{Duration, Instant};
 
+use crate::attributes::with_numbers;
 use crate::shapes::{torus, written};
 use glam::DVec3;
-use neurotess_mesh::{Format, check, read_bytes};
+use neurotess_mesh::{Format, OwnAttribute, check, read_bytes, read_bytes_with_attributes};
 
 /// xorshift64 (G. Marsaglia, Xorshift RNGs, 2003).
 struct Dice(u64);
@@ -83,6 +84,9 @@ fn mutated_files_neither_panic_nor_explode() {
         })
         .collect();
     seeds.push((Format::Ply, text_ply.to_vec()));
+    for format in [Format::Ply, Format::Vtu, Format::Glb] {
+        seeds.push((format, with_numbers(format)));
+    }
     seeds.push((Format::Stl, text_stl.to_vec()));
 
     let mut dice = Dice(number("NEUROTESS_FUZZ_SEED").unwrap_or(0x9e37_79b9_7f4a_7c15) | 1);
@@ -101,6 +105,12 @@ fn mutated_files_neither_panic_nor_explode() {
                 assert!(mesh.vertices.len() <= 8 * bytes.len());
                 assert!(mesh.faces.triangles.len() <= 8 * bytes.len() + 2);
                 check(&mesh);
+            }
+            if let Ok((mesh, own)) = read_bytes_with_attributes(&bytes, *format) {
+                let numbers: usize = own.iter().map(|a| a.values.len()).sum();
+                assert!(numbers <= 8 * bytes.len());
+                let whole = |a: &OwnAttribute| a.values.len() == a.components * mesh.vertices.len();
+                assert!(own.iter().all(whole));
             }
         }
     }
