@@ -212,11 +212,13 @@ fn ticks([low, high]: [f32; 2], more: bool, line: f32) -> Vec<(f32, String)> {
     let [low, high] = [low, high].map(f64::from);
     let step = nice_step((high - low) / 5.0);
     let mut ticks = Vec::new();
-    let mut tick = (low / step).ceil() * step;
-    while tick <= high * (1.0 + 1e-6) {
+    let mut steps = (low / step).ceil();
+    // 0 is added so that none is −0.
+    while steps * step <= high + 1e-6 * high.abs() {
+        let tick = steps * step + 0.0;
         let share = ((tick - low) / (high - low)) as f32;
         ticks.push((share, number(tick, step)));
-        tick += step;
+        steps += 1.0;
     }
     if more {
         let label = ticks.iter().find(|(share, _)| *share > 0.999);
