@@ -74,3 +74,118 @@ def test_attributes_that_end_early_are_errors(mesh: nt.Mesh, tmp_path: Path) -> 
     (tmp_path / "large.ply").write_bytes(header + b"end_header\n" + bytes(100))
     with pytest.raises(nt.ReadError, match="ends within"):
         nt.read_mesh(tmp_path / "large.ply")
+
+
+SMALL = {"size": (160, 120), "samples": 4}
+BLUE_TO_RED = ["#0000ff", "#ff0000"]
+
+
+def pixels(picture: nt.Image) -> np.ndarray:
+    return np.asarray(picture)[..., :3].astype(int)
+
+
+class Elsewhere:
+    """A mesh of another package, as trimesh has them."""
+
+    def __init__(self, mesh: nt.Mesh, **attributes: np.ndarray) -> None:
+        self.vertices, self.faces = mesh.vertices, mesh.faces
+        self.vertex_attributes = attributes
+
+
+@pytest.mark.usefixtures("can_draw")
+def test_meshes_are_colored_by_numbers_of_their_vertices(mesh: nt.Mesh) -> None:
+    height = mesh.vertices[:, 1]
+    options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat"}
+    picture = pixels(mesh.render(values=height, **options))
+    rows = [row[row.sum(axis=1) < 600] for row in picture]
+    shown = [row for row in rows if len(row) > 2]
+    red, blue = shown[2].mean(axis=0), shown[-3].mean(axis=0)
+    assert red[0] > 200 > 80 > red[2] and blue[2] > 200 > 80 > blue[0]
+    # By name, by the function, and from other packages it is the same picture.
+    named = mesh.with_attribute("height", height)
+    assert (pixels(named.render(values="height", **options)) == picture).all()
+    assert (pixels(nt.render(named, values="height", **options)) == picture).all()
+    assert (pixels(nt.render([named], values=[height[:, None]], **options)) == picture).all()
+    theirs = Elsewhere(mesh, height=height.astype(int))
+    assert (pixels(nt.render(Elsewhere(mesh), values=height, **options)) == picture).all()
+    close = pixels(nt.render(theirs, values="height", **options))
+    assert np.abs(close - picture).mean() < 2
+    # A range, and numbers that are none.
+    low = pixels(mesh.render(values=height, range=(100, 200), **options))
+    assert (low[..., 0] - low[..., 2]).max() <= 0 < (low[..., 2] - low[..., 0]).max()
+    none = pixels(mesh.render(values=np.full(len(height), np.nan), **options))
+    assert np.ptp(none, axis=2).max() == 0 and none.min() < 200
+
+
+@pytest.mark.usefixtures("can_draw")
+def test_vertices_at_one_place_keep_their_own_numbers() -> None:
+    # Two triangles that share a side, each with its corners for itself.
+    corners = np.array([[0, 0, 0], [10, 0, 0], [0, 10, 0], [10, 10, 0], [0, 10, 0], [10, 0, 0]], float)
+    square = nt.Mesh.from_arrays(corners, [[0, 1, 2], [3, 4, 5]])
+    options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat", "view": "front"}
+    picture = pixels(square.render(values=[0, 0, 0, 1, 1, 1], **options))
+    red, blue = picture[..., 0] > 200, picture[..., 2] > 200
+    mixed = (picture.min(axis=2) < 60) & (picture[..., 0] > 60) & (picture[..., 2] > 60)
+    assert (red & ~blue).sum() > 1000 < (blue & ~red).sum()
+    # Between them is the side alone, which is smooth.
+    assert mixed.sum() < 200
+
+
+@pytest.mark.usefixtures("can_draw")
+def test_the_legend_tells_numbers_of_meshes(mesh: nt.Mesh) -> None:
+    height = mesh.vertices[:, 1]
+    big = {"size": (400, 300), "samples": 4}
+    plain = pixels(mesh.render(values=height, **big))
+    titled = pixels(mesh.render(values=height, title="height", unit="µm", **big))
+    without = pixels(mesh.render(values=height, legend=False, **big))
+    assert (plain != titled).any() and (plain != without).any()
+    # The name of an attribute is its title.
+    named = mesh.with_attribute("height", height).render(values="height", unit="µm", **big)
+    assert (pixels(named) == titled).all()
+
+
+@pytest.mark.usefixtures("can_draw")
+def test_cells_and_meshes_have_one_scale(mesh: nt.Mesh) -> None:
+    cell = mesh.cell
+    assert cell is not None
+    beside = nt.Mesh.from_arrays(mesh.vertices + [60, 0, 0], mesh.faces)
+    options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat"}
+    zeros, ones = {"point": np.zeros(len(cell))}, np.ones(len(mesh.vertices))
+    both = pixels(nt.render([cell, beside], values=[zeros, ones], **options))
+    assert (both[:, :60, 0] - both[:, :60, 2]).max() < 50 and (both[:, 100:, 0] - both[:, 100:, 2]).max() > 150
+    # Cells by their type beside a mesh with numbers, and the other way round.
+    one = pixels(nt.render([cell, beside], values=[None, ones], **options))
+    assert (one[:, 100:] == both[:, 100:]).mean() < 1
+    other = pixels(nt.render([cell, beside], values=[zeros, None], **options))
+    assert (other[:, 100:] != both[:, 100:]).any()
+    listed = nt.render(cell, meshes={"mesh": beside, "values": ones}, values=zeros, **options)
+    assert (pixels(listed) == both).all()
+
+
+def test_numbers_that_fit_no_mesh_are_told(mesh: nt.Mesh, tmp_path: Path) -> None:
+    count = len(mesh.vertices)
+    shapes = rf"values= of fork have shape \(3,\): \({count},\) is needed, a number for each vertex"
+    for draw in (lambda: mesh.render(values=[1, 2, 3]), lambda: nt.render(mesh, values=[1, 2, 3])):
+        with pytest.raises(ValueError, match=shapes):
+            draw()
+    with pytest.raises(ValueError, match=rf"of mesh 1 have shape \({count}, 2\): \({count},\) is needed"):
+        nt.render(Elsewhere(mesh), values=mesh.vertices[:, :2])
+    with pytest.raises(ValueError, match=rf"shape \({len(mesh.faces)},\).*these are of its faces"):
+        mesh.render(values=np.zeros(len(mesh.faces)))
+    with pytest.raises(ValueError, match=r"values\[mesh.point_index\]"):
+        mesh.render(values=np.zeros(len(mesh.cell or [])))
+    with pytest.raises(ValueError, match="values='calcium': fork has 'type', 'point', 'section', 'radius'"):
+        mesh.render(values="calcium")
+    with pytest.raises(ValueError, match="values='calcium': mesh 1 has 'heat'"):
+        nt.render(Elsewhere(mesh, heat=mesh.radius), values="calcium")
+    with pytest.raises(ValueError, match="not numbers, but <U1"):
+        mesh.render(values=["a"] * count)
+    with pytest.raises(ValueError, match="values= of 2 cells and meshes are a list"):
+        nt.render([mesh, mesh], values=mesh.radius)
+    with pytest.raises(ValueError, match="leave out times="):
+        mesh.render(values=mesh.radius, times=[0, 1])
+    with pytest.raises(ValueError, match="leave out color='red'"):
+        mesh.render(values="radius", color="red")
+    mesh.save(tmp_path / "fork.obj")
+    with pytest.raises(ValueError, match="values='heat': fork.obj has 'type'"):
+        nt.render([], meshes={"mesh": tmp_path / "fork.obj", "values": "heat"})

@@ -374,7 +374,7 @@ def test_surfaces_are_drawn_alone(cell: nt.Morphology) -> None:
     assert (np.asarray(both) == np.asarray(nt.render(cell, meshes=[mesh], **SMALL))).all()
     with pytest.raises(ValueError, match="there is no cell to draw"):
         nt.render([])
-    with pytest.raises(ValueError, match="values= are of cells"):
+    with pytest.raises(ValueError, match="is needed, a number for each vertex"):
         mesh.render(values=[1.0])
 
 

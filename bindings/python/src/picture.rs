@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use neurotess::circuit::{NodeRef, TimeAxis};
-use neurotess::coloring::{CellSeries, CellValues, OwnSeries, OwnValues};
+use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnSeries, OwnValues};
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput};
@@ -87,6 +87,22 @@ pub(crate) fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnV
     })
 }
 
+/// By mesh beside the cells the numbers of its vertices, if it has any; what they are, and their unit.
+type GivenMeshValues<'py> = (Vec<Option<PyReadonlyArray1<'py, f32>>>, String, String);
+
+fn mesh_values((meshes, title, unit): GivenMeshValues<'_>) -> PyResult<MeshValues> {
+    let of_mesh = |values: &Option<PyReadonlyArray1<'_, f32>>| {
+        let values = values.as_ref().map(|v| v.as_slice().map(<[f32]>::to_vec));
+        values.transpose()
+    };
+    let meshes: Result<_, _> = meshes.iter().map(of_mesh).collect();
+    Ok(MeshValues {
+        meshes: meshes?,
+        title,
+        unit,
+    })
+}
+
 /// By cell the columns of its points and of its somata (−1: none) and the numbers of the columns by frame; start and step
 /// of the frames (ms); what they are, and their unit; times of pictures, as ``0:10:0.5``.
 pub(crate) type GivenSeries<'py> = (
@@ -139,6 +155,7 @@ impl Drawing {
         options: Vec<String>,
         values: Option<GivenValues<'_>>,
         series: Option<GivenSeries<'_>>,
+        meshes: Option<GivenMeshValues<'_>>,
         scale: Option<Vec<Rgb>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
@@ -147,6 +164,7 @@ impl Drawing {
         let colors = DrawingColors {
             values,
             series,
+            meshes: meshes.map(mesh_values).transpose()?,
             scale,
         };
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();

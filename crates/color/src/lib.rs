@@ -51,7 +51,7 @@ pub use markers::{
     EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCell, ShownCells, SynapseFacts,
     SynapseOptions, SynapsesOf, points, synapse_markers, synapses,
 };
-pub use meshes::mesh_color;
+pub use meshes::{MeshValues, mesh_color};
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
 #[cfg(feature = "circuit")]
 pub use own_series::{CellSeries, OwnSeries};

@@ -312,7 +312,8 @@ fn mesh_shaders_are_valid_in_every_language_and_have_our_structs() {
                 number,
                 edges,
                 first_half,
-                scale
+                scale,
+                keyed
             ]
         );
     }

@@ -344,18 +344,20 @@ class Mesh:
 
     # Pictures
 
-    def render(self, *, color: Color | None = None, **options: Any) -> Image:
-        """Draws the mesh alone, in one color. The options are those of `neurotess.render`, which draws it beside cells,
-        too: ``neurotess.render([cell, mesh])``.
+    def render(self, *, color: Color | None = None, values: ArrayLike | None = None, **options: Any) -> Image:
+        """Draws the mesh alone, in one color, or colored by `values`: a number for each vertex, (v,), or the name of an
+        attribute. NaN is gray; `colormap`, `range`, `title` and `unit` as of `neurotess.render`, whose options are all
+        possible, and which draws the mesh beside cells, too: ``neurotess.render([cell, mesh])``.
 
         >>> import neurotess as nt
         >>> mesh = nt.mesh(nt.synth("granule", points=100))
         >>> mesh.render(color="teal", view="iso").save("mesh.png")        # doctest: +SKIP
+        >>> mesh.render(values="radius", unit="µm").save("mesh.png")      # doctest: +SKIP
         """
         from ._pictures import render
 
-        one: Any = self if color is None else {"mesh": self, "color": color}
-        return render([], meshes=[one], **options)
+        look = {"mesh": self, "color": color, "values": values}
+        return render([], meshes=[look], **options)
 
     # Python
 

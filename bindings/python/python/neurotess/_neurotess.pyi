@@ -229,6 +229,7 @@ class Drawing:
         options: list[str],
         values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
         series: _Series | None,
+        meshes: tuple[list[NDArray[np.float32] | None], str, str] | None,
         scale: list[list[int]] | None,
         adapter: str | None,
     ) -> Drawing: ...

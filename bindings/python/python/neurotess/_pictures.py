@@ -153,7 +153,8 @@ def render(
 
     Colors: `color_by`; `values` of your own, with a `title` and a `unit` for the legend: an array with a number for each
     of ``cell.points``, of the rows of ``cell.to_table()`` (with the soma's) or of ``cell.sections``; as in
-    ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. With `times`
+    ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. Of a mesh they
+    are a number for each vertex, or the name of an attribute. With `times`
     (ms) they are over time: an array with a row, or a column, for each time, or ``{"segment": arrays}``, an array for each
     of ``cell.sections`` (the soma's before them, or not) with the segments' numbers, as a simulator records them; `time`
     (ms) is the one that is shown, of `film` those. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a
@@ -177,7 +178,8 @@ def render(
 
     Other `meshes` of the scene, such as brain regions, segments of electron microscopy or a pipette: files (PLY, OBJ,
     STL, GLB, …), a `Mesh`, or anything with `vertices` and `faces` (µm); or dictionaries like ``{"mesh": "region.obj",
-    "color": "#7799bb", "opacity": 0.2}``, with ``"edges"`` (True: only those are drawn), ``"scale"`` (µm of a unit of
+    "color": "#7799bb", "opacity": 0.2}``, with ``"values"`` (a number for each vertex, or the name of an
+    attribute, with `colormap`, `range`, `title` and `unit` as above), ``"edges"`` (True: only those are drawn), ``"scale"`` (µm of a unit of
     the file) and ``"fit"`` (True: the camera fits it even if one can see through it).
 
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,

@@ -8,8 +8,8 @@ from . import _neurotess, _options
 from ._colormaps import is_own, scale_of
 from ._colors import text_of
 from ._errors import OptionError, RenderError, missing_file
-from ._meshes import Mesh
-from ._sources import cell_of, is_alone, is_surface
+from ._sources import cell_of, is_alone
+from ._surfaces import joint_range, looks_of, values_of_meshes, without_surfaces, words_of
 from ._values import values_of
 
 TYPE_CHECKING = False
@@ -58,23 +58,6 @@ def _cells(what: Any, options: dict[str, Any]) -> list[Morphology]:
     return [cell_of(one) for one in many]
 
 
-def _without_surfaces(what: Any, options: dict[str, Any]) -> Any:
-    """The cells of what is drawn; surfaces among them become meshes of the options."""
-    from collections.abc import Mapping
-
-    if is_surface(what):
-        what = [what]
-    elif is_alone(what) or isinstance(what, DrawnCircuit):
-        return what
-    many = list(what)
-    surfaces = [one for one in many if is_surface(one)]
-    if surfaces:
-        given = options.get("meshes")
-        alone = isinstance(given, (str, os.PathLike, Mapping)) or is_surface(given)
-        options["meshes"] = [*surfaces, *([] if given is None else [given] if alone else given)]
-    return [one for one in many if not is_surface(one)]
-
-
 def check_names(name: str, function: Callable[..., Any], options: dict[str, Any]) -> None:
     """Checks that these are keywords of a function, which hands them over to another.
 
@@ -104,23 +87,27 @@ def drawing_of(
         raise RenderError("this build draws no pictures: build it with the feature 'render'")
     quiet_adapters()
     options = _with_colors(options)
-    what = _without_surfaces(what, options)
+    what = without_surfaces(what, options)
     if isinstance(what, DrawnCircuit):
         cells, circuit = [], (what._path, _chosen(what, options))
     else:
         cells, circuit = _cells(what, options), None
+    looks = looks_of(options.pop("meshes", None))
+    of_meshes = values_of_meshes(looks, options)
     still, series = values_of(cells, is_alone(what), options)
+    if of_meshes is not None and options.get("range") is None:
+        options["range"] = joint_range(still, of_meshes)
     scale = _own_scale(options)
-    meshes = options.pop("meshes", None)
     for name, is_file in (("points", True), ("report", circuit is not None)):
         if is_file and options.get(name) is not None:
             _check_file(options[name])
     # Meshes in memory are read from files that last as long as that.
     with tempfile.TemporaryDirectory(prefix="neurotess") as folder:
-        options["mesh"] = _mesh_words(meshes, folder)
+        options["mesh"] = words_of(looks, folder)
         words = _options.arguments(options)
+        colors = still, series, of_meshes, scale
         try:
-            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, still, series, scale, adapter)
+            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, *colors, adapter)
         except OptionError as error:
             from ._errors import with_given
 
@@ -142,35 +129,6 @@ def _own_scale(options: dict[str, Any]) -> list[list[int]] | None:
 def _check_file(path: str | os.PathLike[str]) -> None:
     if not os.path.exists(path):
         raise missing_file(os.fspath(path))
-
-
-def _mesh_words(meshes: Any, folder: str) -> list[str]:
-    """Meshes beside the cells as the command line takes them."""
-    from collections.abc import Mapping
-
-    if meshes is None:
-        return []
-    alone = isinstance(meshes, (str, os.PathLike, Mapping)) or is_surface(meshes)
-    words = []
-    for number, one in enumerate([meshes] if alone else meshes):
-        look = dict(one) if isinstance(one, Mapping) else {"mesh": one}
-        if "mesh" not in look:
-            raise ValueError(f"{one!r} names no mesh: it needs a file or a mesh as 'mesh'")
-        file = look.pop("mesh")
-        if "color" in look:
-            look["color"] = text_of(look["color"])
-        if isinstance(file, (str, os.PathLike)):
-            _check_file(file)
-        else:
-            surface = file if isinstance(file, Mesh) else Mesh.from_arrays(file.vertices, file.faces)
-            name = surface.name.replace(os.sep, "_") if isinstance(file, Mesh) else f"mesh {number + 1}"
-            file = os.path.join(folder, str(number), f"{name}.ply")
-            os.mkdir(os.path.dirname(file))
-            surface.save(file)
-        options = [f"{name}={_options.word(value)}" for name, value in look.items() if not isinstance(value, bool)]
-        flags = [name for name, value in look.items() if value is True]
-        words.append(",".join([os.fspath(file), *options, *flags]))
-    return words
 
 
 def _with_colors(options: dict[str, Any]) -> dict[str, Any]:

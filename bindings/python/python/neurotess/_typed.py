@@ -60,6 +60,7 @@ class SceneMesh(TypedDict, total=False):
 
     mesh: Mesh | str | os.PathLike[str] | Any
     color: Color
+    values: ArrayLike
     opacity: float
     edges: bool
     scale: float

@@ -119,13 +119,15 @@ pub(crate) fn read_mapped(
     Ok(copied)
 }
 
-/// Bind group of two storage buffers and, at 2, a uniform of this size whose offset is set when it is bound.
+/// Bind group of two storage buffers and, at 2, a uniform of this size whose offset is set when it is bound; then `more`
+/// storage buffers.
 pub(crate) fn group_with_frame(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     [first, second]: [&wgpu::Buffer; 2],
     (frames, size): (&wgpu::Buffer, usize),
+    more: &[&wgpu::Buffer],
 ) -> wgpu::BindGroup {
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let frame = wgpu::BufferBinding {
@@ -133,14 +135,17 @@ pub(crate) fn group_with_frame(
         offset: 0,
         size: wgpu::BufferSize::new(size as u64),
     };
+    let mut entries = vec![
+        entry(0, first.as_entire_binding()),
+        entry(1, second.as_entire_binding()),
+        entry(2, wgpu::BindingResource::Buffer(frame)),
+    ];
+    let more = (3..).zip(more);
+    entries.extend(more.map(|(binding, buffer)| entry(binding, buffer.as_entire_binding())));
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(label),
         layout,
-        entries: &[
-            entry(0, first.as_entire_binding()),
-            entry(1, second.as_entire_binding()),
-            entry(2, wgpu::BindingResource::Buffer(frame)),
-        ],
+        entries: &entries,
     })
 }
 

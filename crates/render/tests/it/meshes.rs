@@ -9,7 +9,7 @@ use crate::pictured::{CELL, by_type, mesh};
 use crate::renderer::source;
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Faces, SurfaceMesh, SurfaceVertex};
-use neurotess_render::color::{ColorTable, Rgb, category, linear};
+use neurotess_render::color::{ColorTable, Rgb, category, fraction, linear};
 use neurotess_render::{
     Adaptive, Camera, Clip, Combined, Gpu, Image, KeyColors, Lens, Light, Look, MeshGeometry,
     MeshLook, Meshes, Occlusion, PictureOptions, Placement, StillRenderer, VertexSource, Viewpoint,
@@ -335,6 +335,50 @@ fn cuts_cut_meshes_and_tiles_fit_together() {
     };
     assert!(left(&whole) > 1000 && left(&cut) == 0, "{}", left(&cut));
     assert!(cut.at(SIZE[0] - 20, SIZE[1] / 2) != [255; 4]);
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn vertices_have_colors_of_their_own() {
+    let gpu = device();
+    let cell = mesh(CELL);
+    let (mut table, [red, _]) = table(&cell);
+    table.scale = vec![RED, BLUE];
+    let view = view(DVec3::Z, Lens::from(0.3));
+    let mut cells = source(&gpu, &cell, &[]);
+    let look = look(red, 1.0);
+    // From red on the left to blue on the right.
+    let across = |mesh: &SurfaceMesh| -> Vec<u32> {
+        let place = |v: &SurfaceVertex| fraction((v.position.x + HALF) / (2.0 * HALF));
+        mesh.vertices.iter().map(place).collect()
+    };
+    let sheet = folded(&[20.0]);
+    for edges in [false, true] {
+        let keys = across(&sheet);
+        let geometry = MeshGeometry::with_keys(&gpu, sheet.clone(), &keys).expect("uploaded");
+        let bytes = geometry.bytes();
+        let plain = MeshGeometry::new(&gpu, sheet.clone()).expect("uploaded");
+        assert_eq!(bytes, plain.bytes() + 4 * sheet.vertices.len() as u64);
+        let look = MeshLook { edges, ..look };
+        let mut meshes = Meshes::new(&gpu, vec![(Arc::new(geometry), look)]);
+        let mut both = Combined::new(&mut cells).with_meshes(Some(&mut meshes));
+        let image = drawn(&gpu, &mut both, &view, &table, &options());
+        // Mean red less blue of the quarters, from left to right.
+        let quarter = |n: u32| {
+            let columns = n * SIZE[0] / 4..(n + 1) * SIZE[0] / 4;
+            let all = columns.flat_map(|x| (0..SIZE[1]).map(move |y| (x, y)));
+            all.map(|(x, y)| {
+                let [r, _, b, _] = image.at(x, y);
+                i64::from(r) - i64::from(b)
+            })
+            .sum::<i64>()
+        };
+        let quarters = [0, 1, 2, 3].map(quarter);
+        assert!(
+            quarters.is_sorted_by(|a, b| a > b),
+            "{quarters:?}, edges: {edges}"
+        );
+        assert!(quarters[0] > 0 && quarters[3] < 0, "{quarters:?}");
+    }
 }
 
 #[neurotess_testing::test(needs(gpu))]

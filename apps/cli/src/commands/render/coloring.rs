@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet, OwnSeries,
-    OwnValues, Recording, by_attribute, by_values,
+    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet,
+    MeshValues, OwnSeries, OwnValues, Recording, by_attribute, by_values,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -16,7 +16,7 @@ use super::cells::MeshedCell;
 use super::circuit_instances::CircuitInstances;
 use super::color_check;
 use super::markers;
-use super::meshes::SceneMeshes;
+use super::meshes::{MeshKeys, SceneMeshes};
 use super::times::{self, time_text};
 use crate::report::Reporter;
 
@@ -27,7 +27,7 @@ pub(crate) struct PictureColors {
     /// Synapses or points beside the cells.
     pub(crate) markers: Option<MarkerSet>,
     /// By mesh beside the cells: what its color is looked up by.
-    pub(crate) mesh_keys: Vec<u32>,
+    pub(crate) mesh_keys: Vec<MeshKeys>,
     /// The recording of a series over time, whose pictures differ in values.
     series: Option<RecordedSeries>,
     /// Number of neurons in the picture.
@@ -63,9 +63,34 @@ impl PictureColors {
         Ok((table, legend))
     }
 
-    /// Adds the colors and names of meshes.
-    pub(crate) fn add_meshes(&mut self, meshes: &SceneMeshes) {
-        self.mesh_keys = self.coloring.add_meshes(&meshes.colors());
+    /// Adds the colors and names of meshes, and numbers of their vertices. `told`: cells have such numbers, too, which the
+    /// legend tells.
+    ///
+    /// # Errors
+    /// The numbers are not of these meshes, or stand beside those of a recording.
+    pub(crate) fn add_meshes(
+        &mut self,
+        meshes: &SceneMeshes,
+        values: Option<(&MeshValues, bool)>,
+        args: &RenderArgs,
+    ) -> anyhow::Result<()> {
+        let mut of_vertices = Vec::new();
+        if let Some((values, told)) = values {
+            meshes.check(values)?;
+            if self.series.is_some() {
+                anyhow::bail!("values of meshes are not shown beside a recording");
+            }
+            of_vertices = self.coloring.add_mesh_values(values, &scheme(args), told);
+        }
+        let plain = meshes.colors(values.map(|(values, _)| values));
+        let mut whole = self.coloring.add_meshes(&plain).into_iter();
+        of_vertices.resize(meshes.len(), None);
+        let keys = of_vertices.into_iter().map(|keys| match keys {
+            Some(keys) => Some(MeshKeys::OfVertices(keys)),
+            None => whole.next().map(MeshKeys::Whole),
+        });
+        self.mesh_keys = keys.flatten().collect();
+        Ok(())
     }
 
     /// The widths of neurites become those of these options.
@@ -146,14 +171,7 @@ pub(crate) fn of_pictures(
     own: Option<OwnNumbers<'_>>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
-    let background = args.background();
-    let scheme = ColorScheme {
-        palette: args.base_palette(),
-        own_colors: args.own_colors(),
-        background,
-        scale: args.color_scale(background),
-        range: args.range,
-    };
+    let scheme = scheme(args);
     let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();
     let cells: Vec<Cell<'_>> = cells
         .iter()
@@ -212,6 +230,18 @@ pub(crate) fn of_pictures(
         colored.closest = color_check::check(&colored.coloring, args, reporter);
     }
     Ok(colored)
+}
+
+/// The colors that the options ask for.
+fn scheme(args: &RenderArgs) -> ColorScheme {
+    let background = args.background();
+    ColorScheme {
+        palette: args.base_palette(),
+        own_colors: args.own_colors(),
+        background,
+        scale: args.color_scale(background),
+        range: args.range,
+    }
 }
 
 /// Colors of whole cells of a circuit, if the options ask for them.

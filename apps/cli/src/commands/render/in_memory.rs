@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Parser;
 use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
-use neurotess::coloring::{MarkerSet, OwnSeries, OwnValues};
+use neurotess::coloring::{MarkerSet, MeshValues, OwnSeries, OwnValues};
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::color::Rgb;
 use neurotess::render::overlay::Overlay;
@@ -55,6 +55,8 @@ pub struct DrawingColors {
     pub values: Option<OwnValues>,
     /// Numbers of the cells over time, instead, and the times of the pictures, as `--time` has them.
     pub series: Option<(OwnSeries, Option<String>)>,
+    /// Numbers of the meshes beside the cells, in the order of the options.
+    pub meshes: Option<MeshValues>,
     /// Colors of numbers, instead of a color map.
     pub scale: Option<Vec<Rgb>>,
 }
@@ -133,7 +135,7 @@ impl Drawing {
         };
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
-        let made = Self::made(gpu, input, args, own, &reporter);
+        let made = Self::made(gpu, input, args, (own, colors.meshes.as_ref()), &reporter);
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),
@@ -149,13 +151,14 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         args: Box<RenderArgs>,
-        own: Option<OwnNumbers<'_>>,
+        (own, of_meshes): (Option<OwnNumbers<'_>>, Option<&MeshValues>),
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
         vertex_source::mode(&args)?;
-        if own.is_none() {
+        if own.is_none() && of_meshes.is_none() {
             checks::check_value(&args)?;
         }
+        let told = matches!(own, Some(OwnNumbers::Still(_)));
         let RenderScene {
             entries,
             placements,
@@ -184,7 +187,7 @@ impl Drawing {
         let meshes = SceneMeshes::read(&args.meshes, reporter)?;
         let shown_by = (instances.as_ref(), &of_cells[..]);
         let mut colored = coloring::of_pictures(&shown, shown_by, &args, own, reporter)?;
-        colored.add_meshes(&meshes);
+        colored.add_meshes(&meshes, of_meshes.map(|values| (values, told)), &args)?;
         let mut spheres = bounds::spheres(&shown, &placements);
         spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
         let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use neurotess::coloring::mesh_color;
+use neurotess::coloring::{MeshValues, mesh_color};
 use neurotess::mesh::{self, SurfaceMesh};
 use neurotess::render::bounds::surface_points;
 use neurotess::render::color::Rgb;
@@ -22,6 +22,14 @@ struct SceneMesh {
     arg: MeshArg,
     surface: SurfaceMesh,
     points: Vec<BoundingSphere>,
+}
+
+/// What the colors of a mesh are looked up by.
+pub(crate) enum MeshKeys {
+    /// One for all of it.
+    Whole(u32),
+    /// One for each vertex.
+    OfVertices(Vec<u32>),
 }
 
 impl SceneMeshes {
@@ -49,9 +57,35 @@ impl SceneMeshes {
         Ok(Self { meshes })
     }
 
-    /// Color and name of each.
-    pub(super) fn colors(&self) -> Vec<(Rgb, String)> {
-        let named = self.meshes.iter().enumerate().map(|(i, mesh)| {
+    /// Number of meshes.
+    pub(super) fn len(&self) -> usize {
+        self.meshes.len()
+    }
+
+    /// Checks that these are numbers of their vertices.
+    ///
+    /// # Errors
+    /// They are not.
+    pub(super) fn check(&self, values: &MeshValues) -> anyhow::Result<()> {
+        if values.meshes.len() != self.meshes.len() {
+            let (given, meshes) = (values.meshes.len(), self.meshes.len());
+            anyhow::bail!("there are values of {given} meshes for {meshes}");
+        }
+        for (mesh, values) in self.meshes.iter().zip(&values.meshes) {
+            let (file, vertices) = (mesh.arg.file.display(), mesh.surface.vertices.len());
+            if let Some(values) = values.as_ref().filter(|v| v.len() != vertices) {
+                let given = values.len();
+                anyhow::bail!("{file}: there are {given} values for {vertices} vertices");
+            }
+        }
+        Ok(())
+    }
+
+    /// Color and name of each that has no numbers.
+    pub(super) fn colors(&self, values: Option<&MeshValues>) -> Vec<(Rgb, String)> {
+        let has_none = |i: usize| values.is_none_or(|v| v.meshes[i].is_none());
+        let plain = self.meshes.iter().enumerate().filter(|(i, _)| has_none(*i));
+        let named = plain.map(|(i, mesh)| {
             let stem = mesh.arg.file.file_stem().unwrap_or_default();
             let color = mesh.arg.color.unwrap_or(mesh_color(i));
             (color, stem.to_string_lossy().into_owned())
@@ -80,18 +114,21 @@ impl SceneMeshes {
             .flat_map(|mesh| mesh.points.iter().copied())
     }
 
-    /// Uploads them with these color keys; none if there are none.
+    /// Uploads them with these color keys; gives none if there are no meshes.
     ///
     /// # Errors
     /// They do not fit the device.
-    pub(super) fn upload(self, gpu: &Gpu, color_keys: &[u32]) -> anyhow::Result<Option<Meshes>> {
+    pub(super) fn upload(self, gpu: &Gpu, keys: &[MeshKeys]) -> anyhow::Result<Option<Meshes>> {
         if self.meshes.is_empty() {
             return Ok(None);
         }
         let mut all = Vec::new();
-        for (SceneMesh { arg, surface, .. }, &color_key) in self.meshes.into_iter().zip(color_keys)
-        {
-            let geometry = MeshGeometry::new(gpu, surface)?;
+        for (SceneMesh { arg, surface, .. }, keys) in self.meshes.into_iter().zip(keys) {
+            let (color_key, of_vertices) = match keys {
+                MeshKeys::Whole(key) => (*key, &[][..]),
+                MeshKeys::OfVertices(keys) => (0, &keys[..]),
+            };
+            let geometry = MeshGeometry::with_keys(gpu, surface, of_vertices)?;
             let look = MeshLook {
                 color_key,
                 opacity: arg.opacity as f32,

@@ -86,7 +86,7 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
     let shown_by = (instances.as_ref(), &of_cells[..]);
     let mut colored = coloring::of_pictures(&cells, shown_by, args, None, reporter)?;
-    colored.add_meshes(&meshes);
+    colored.add_meshes(&meshes, None, args)?;
     let mut spheres = bounds::spheres(&cells, &placements);
     spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
     let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();

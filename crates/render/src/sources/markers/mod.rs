@@ -203,6 +203,7 @@ impl Markers {
                     &made.layout,
                     [&stored, &corners],
                     (&made.frames, size_of::<MarkerFrame>()),
+                    &[],
                 ),
             });
         }

@@ -41,6 +41,8 @@ pub(super) struct Run {
 pub(super) struct Chunk {
     pub(super) vertices: wgpu::Buffer,
     pub(super) corners: wgpu::Buffer,
+    /// Color keys of the vertices.
+    pub(super) keys: Option<wgpu::Buffer>,
     pub(super) runs: Vec<Run>,
     /// Index of its first triangle that is half of a quad.
     pub(super) first_half: u32,
@@ -59,14 +61,28 @@ impl MeshGeometry {
     /// # Errors
     /// The device has no room for it.
     pub fn new(gpu: &Gpu, mesh: SurfaceMesh) -> Result<Self, DeviceError> {
+        Self::with_keys(gpu, mesh, &[])
+    }
+
+    /// Uploads a mesh with a color key for each vertex: a category or, beside no
+    /// [values of instances](crate::color::ColorTable::values), a fraction of the scale. Colors are interpolated between
+    /// vertices, but for pictures that are colored anew, where a triangle has the color of its first vertex. Without keys
+    /// it has the color of its look.
+    ///
+    /// # Errors
+    /// The device has no room for it.
+    ///
+    /// # Panics
+    /// If there are keys, but not one for each vertex.
+    pub fn with_keys(gpu: &Gpu, mesh: SurfaceMesh, keys: &[u32]) -> Result<Self, DeviceError> {
         let origin = mesh.origin;
-        let lit = Lit::new(mesh);
+        let lit = Lit::new(mesh, keys);
         let mut chunks = Vec::new();
         // By vertex: its number within the chunk.
         let mut places = vec![u32::MAX; lit.vertices.len()];
         for (triangles, first) in lit.triangles.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
             let first_half = lit.first_half.saturating_sub(first).min(triangles.len());
-            let chunk = Chunk::new(gpu, &lit.vertices, triangles, &mut places);
+            let chunk = Chunk::new(gpu, &lit, triangles, &mut places);
             chunks.push(Chunk {
                 first_half: first_half as u32,
                 ..chunk
@@ -84,7 +100,10 @@ impl MeshGeometry {
 
     /// Bytes on the device.
     pub fn bytes(&self) -> u64 {
-        let bytes = |chunk: &Chunk| chunk.vertices.size() + chunk.corners.size();
+        let bytes = |chunk: &Chunk| {
+            let keys = chunk.keys.as_ref().map_or(0, wgpu::Buffer::size);
+            chunk.vertices.size() + chunk.corners.size() + keys
+        };
         self.chunks.iter().map(bytes).sum()
     }
 
@@ -100,7 +119,8 @@ impl MeshGeometry {
 
 impl Chunk {
     /// `places`: all `u32::MAX`, and left so.
-    fn new(gpu: &Gpu, vertices: &[[Vec3; 2]], triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
+    fn new(gpu: &Gpu, lit: &Lit, triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
+        let vertices = &lit.vertices;
         // Vertices are numbered within the chunk, in the order of first use.
         let mut used: Vec<u32> = Vec::new();
         let mut corners = Vec::with_capacity(3 * triangles.len());
@@ -134,11 +154,16 @@ impl Chunk {
             MeshVertex { x, y, z, normal }
         });
         let stored: Vec<MeshVertex> = stored.collect();
+        let keys = used
+            .iter()
+            .map(|&vertex| lit.keys.get(vertex as usize).copied());
+        let keys: Option<Vec<u32>> = keys.collect();
         let storage = wgpu::BufferUsages::STORAGE;
         let index = storage | wgpu::BufferUsages::INDEX;
         Self {
             vertices: upload(gpu, "vertices", storage, &stored),
             corners: upload(gpu, "corners", index, &corners),
+            keys: keys.map(|keys| upload(gpu, "keys", storage, &keys)),
             runs,
             first_half: 0,
             triangles: triangles.len(),

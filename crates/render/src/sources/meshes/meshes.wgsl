@@ -23,18 +23,35 @@ struct MeshFrame {
     first_half: u32,
     // Micrometers of a unit of the mesh's coordinates.
     scale: f32,
+    // 1: each vertex has a color key of its own.
+    keyed: u32,
 }
 
 @group(0) @binding(0) var<storage, read> stored: array<MeshVertex>;
 @group(0) @binding(1) var<storage, read> corners: array<u32>;
 @group(0) @binding(2) var<uniform> mesh_frame: MeshFrame;
+// Color keys of the vertices, if they have any.
+@group(0) @binding(3) var<storage, read> own_keys: array<u32>;
+
+// With edges triangles are drawn corner by corner, else by the index buffer.
+fn mesh_index(vertex_index: u32) -> u32 {
+    if mesh_frame.edges != 0u {
+        return corners[vertex_index];
+    }
+    return vertex_index;
+}
+
+fn mesh_key(index: u32) -> u32 {
+    if mesh_frame.keyed != 0u {
+        return own_keys[index];
+    }
+    return mesh_frame.color_key;
+}
 
 fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
-    var index = vertex_index;
+    let index = mesh_index(vertex_index);
     var grid = vec2(0.5);
-    // With edges triangles are drawn corner by corner, else by the index buffer.
     if mesh_frame.edges != 0u {
-        index = corners[vertex_index];
         let corner = vertex_index % 3u;
         // The diagonal of a quad lies where x + y is a half: no edge.
         let side = select(1.0, 0.5, vertex_index / 3u >= mesh_frame.first_half);
@@ -47,7 +64,7 @@ fn surface_vertex(vertex_index: u32, instance_index: u32) -> SurfaceVertex {
         unpack_normal(v.normal),
         position,
         0.0,
-        mesh_frame.color_key,
+        mesh_key(index),
         NO_INSTANCE,
         grid,
     );

@@ -20,7 +20,7 @@ pub use self::geometry::MeshGeometry;
 pub(crate) use self::geometry::MeshVertex;
 use super::companion::Companion;
 use super::pick::PickId;
-use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, group_with_frame, storage, uniform};
+use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, group_with_frame, make, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
 use crate::view::frame::Frame;
@@ -38,7 +38,8 @@ const SHEET_DEPTH: f32 = 24.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshLook {
     /// What its color is looked up by: see [`ColorTable`](crate::color::ColorTable). A category, since it
-    /// belongs to no instance that has values.
+    /// belongs to no instance that has values. Meshes with keys of their own
+    /// ([`MeshGeometry::with_keys`]) have those instead.
     pub color_key: u32,
     /// Share of what lies behind that each of its layers hides, 0 to 1.
     pub opacity: f32,
@@ -66,7 +67,8 @@ pub(crate) struct MeshFrame {
     pub(crate) edges: u32,
     pub(crate) first_half: u32,
     pub(crate) scale: f32,
-    pub(crate) pad: [f32; 3],
+    pub(crate) keyed: u32,
+    pub(crate) pad: [f32; 2],
 }
 
 /// A chunk of a mesh, and what of it is drawn.
@@ -98,6 +100,7 @@ impl Meshes {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let no_keys = make(gpu, "no keys", 0, wgpu::BufferUsages::STORAGE);
         let mut chunks = Vec::new();
         for (mesh, (geometry, _)) in meshes.iter().enumerate() {
             for (chunk, buffers) in geometry.chunks.iter().enumerate() {
@@ -110,6 +113,7 @@ impl Meshes {
                         &layout,
                         [&buffers.vertices, &buffers.corners],
                         (&frames, size_of::<MeshFrame>()),
+                        &[buffers.keys.as_ref().unwrap_or(&no_keys)],
                     ),
                     shown: Vec::new(),
                 });
@@ -218,7 +222,8 @@ impl Companion for Meshes {
                 edges: u32::from(look.edges),
                 first_half: chunk.first_half,
                 scale,
-                pad: [0.0; 3],
+                keyed: u32::from(chunk.keys.is_some()),
+                pad: [0.0; 2],
             };
             let bytes = bytemuck::bytes_of(&uniforms);
             let place = UNIFORM_STRIDE * index as u64;
@@ -270,12 +275,13 @@ pub(crate) fn vertex_shader() -> ShaderParts {
     parts
 }
 
-/// Group 0: vertices, corners, and the frame.
+/// Group 0: vertices, corners, the frame, and keys.
 pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let vertex = wgpu::ShaderStages::VERTEX;
     vec![
         storage(0, vertex, true),
         storage(1, vertex, true),
         uniform(2, wgpu::ShaderStages::VERTEX_FRAGMENT, true),
+        storage(3, vertex, true),
     ]
 }
