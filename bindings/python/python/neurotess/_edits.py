@@ -7,9 +7,10 @@ import warnings
 from collections.abc import Mapping
 
 from . import _neurotess, _options
+from ._cells import cell_of
 from ._errors import NeurotessWarning, OptionError, missing_file
 from ._morphology import Morphology, _warn
-from ._sources import cell_of, package_of, read_cell
+from ._sources import package_of, read_cell
 from ._errors import with_given
 
 TYPE_CHECKING = False

@@ -22,7 +22,7 @@ SIZE = (480, 360)
 CELLS = 500
 
 
-def of_cell(cell: Morphology) -> str:
+def of_cell(cell: Morphology, render: Callable[..., Image]) -> str:
     """A cell: picture, counts, lengths."""
     measures = cell.measures()
     soma = measures["soma"]
@@ -37,7 +37,7 @@ def of_cell(cell: Morphology) -> str:
         ("soma", "none" if soma is None else f"{soma['kind']}, radius {soma['radius']:.3g} µm"),
         ("warnings", str(len(cell.warnings)) if cell.warnings else None),
     ]
-    return _shown(cell.name, rows, lambda: _render()(cell, legend=False, size=SIZE, samples=4))
+    return _shown(cell.name, rows, lambda: render(cell, legend=False, size=SIZE, samples=4))
 
 
 def of_mesh(mesh: Mesh) -> str:
@@ -65,12 +65,6 @@ def of_circuit(circuit: Circuit) -> str:
     ]
     options: dict[str, Any] = {"lod": "exploration", "legend": False, "size": SIZE, "samples": 4}
     return _shown(circuit._path, rows, lambda: circuit.render(sample=CELLS, **options))
-
-
-def _render() -> Callable[..., Image]:
-    from ._pictures import render
-
-    return render
 
 
 def _micrometers(length: float) -> str:

@@ -6,9 +6,10 @@ import os
 from collections import deque
 
 from . import _neurotess, _options
+from ._cells import cell_of, quietly
 from ._meshes import Mesh
 from ._parts import Notice
-from ._sources import cell_of, files_of, is_alone, quietly
+from ._sources import files_of, is_alone
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -338,8 +338,9 @@ class Morphology:
 
     def _repr_html_(self) -> str:
         from ._html import of_cell
+        from ._pictures import render
 
-        return of_cell(self)
+        return of_cell(self, render)
 
     def __repr__(self) -> str:
         neurites = len(self.neurites)

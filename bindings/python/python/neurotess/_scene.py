@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 
 from . import _neurotess, _options
+from ._cells import cell_of
 from ._colormaps import is_own, scale_of
 from ._colors import text_of
 from ._errors import OptionError, RenderError, missing_file
-from ._sources import cell_of, is_alone
+from ._sources import is_alone
 from ._surfaces import joint_range, looks_of, values_of_meshes, without_surfaces, words_of
 from ._values import values_of
 

@@ -1,4 +1,4 @@
-"""What a cell may be given as: a `Morphology`, a file or its content, or a cell of another package."""
+"""What a cell may be given as: files and their content, folders, and cells of other packages."""
 
 from __future__ import annotations
 
@@ -11,42 +11,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from ._morphology import Morphology
-
 #: Extensions of tracings that a folder is searched for; of others a folder has many that are none.
 EXTENSIONS = ("swc", "eswc", "asc", "nml", "traces", "swc.gz", "asc.gz")
-
-
-def cell_of(source: Any) -> Morphology:
-    """The cell; what is odd in a file is warned of."""
-    from ._morphology import Morphology, _with_warnings
-
-    if isinstance(source, Morphology):
-        return source
-    package = package_of(source)
-    if package is None:
-        return _with_warnings(read_cell(source, None, None, False))
-    return _from_package(source, package)
-
-
-def quietly(source: Any) -> Morphology:
-    """The cell, without warnings: they are in `Morphology.warnings`."""
-    from ._morphology import Morphology
-
-    if isinstance(source, Morphology) or package_of(source):
-        return cell_of(source)
-    return Morphology(read_cell(source, None, None, False))
-
-
-def _from_package(source: Any, package: str) -> Morphology:
-    from ._morphology import Morphology
-
-    if package == "navis" and not hasattr(source, "nodes"):
-        kind = type(source).__name__
-        raise TypeError(f"a {kind} of navis has no tracing: a TreeNeuron is needed (of a list, use neurotess.mesh_many)")
-    if package == "navis":
-        return Morphology.from_navis(source)
-    return Morphology.from_morphio(source) if package == "morphio" else Morphology.from_neurom(source)
 
 
 def package_of(source: Any) -> str | None:
@@ -67,9 +33,8 @@ def is_surface(source: Any) -> bool:
 
 def is_alone(source: Any) -> bool:
     """Whether it is one cell, and no list of them."""
-    from ._morphology import Morphology
-
-    if isinstance(source, (Morphology, str, os.PathLike, bytes)) or hasattr(source, "read"):
+    # A `Morphology` has a cell of the module; it is not imported here, since it reads by this file.
+    if isinstance(source, (str, os.PathLike, bytes)) or hasattr(source, "read") or hasattr(source, "_cell"):
         return True
     return package_of(source) is not None and type(source).__name__ != "NeuronList"
 
