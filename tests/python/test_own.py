@@ -101,7 +101,17 @@ def test_meshes_are_colored_by_numbers_of_their_vertices(mesh: nt.Mesh) -> None:
     shown = [row for row in rows if len(row) > 2]
     red, blue = shown[2].mean(axis=0), shown[-3].mean(axis=0)
     assert red[0] > 200 > 80 > red[2] and blue[2] > 200 > 80 > blue[0]
-    # By name, by the function, and from other packages it is the same picture.
+    # Numbers that are none are gray.
+    none = pixels(mesh.render(values=np.full(len(height), np.nan), **options))
+    assert np.ptp(none, axis=2).max() == 0 and none.min() < 200
+
+
+@pytest.mark.full
+@pytest.mark.usefixtures("can_draw")
+def test_numbers_of_meshes_come_by_name_and_from_other_packages(mesh: nt.Mesh) -> None:
+    height = mesh.vertices[:, 1]
+    options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat"}
+    picture = pixels(mesh.render(values=height, **options))
     named = mesh.with_attribute("height", height)
     assert (pixels(named.render(values="height", **options)) == picture).all()
     assert (pixels(nt.render(named, values="height", **options)) == picture).all()
@@ -110,11 +120,8 @@ def test_meshes_are_colored_by_numbers_of_their_vertices(mesh: nt.Mesh) -> None:
     assert (pixels(nt.render(Elsewhere(mesh), values=height, **options)) == picture).all()
     close = pixels(nt.render(theirs, values="height", **options))
     assert np.abs(close - picture).mean() < 2
-    # A range, and numbers that are none.
     low = pixels(mesh.render(values=height, range=(100, 200), **options))
     assert (low[..., 0] - low[..., 2]).max() <= 0 < (low[..., 2] - low[..., 0]).max()
-    none = pixels(mesh.render(values=np.full(len(height), np.nan), **options))
-    assert np.ptp(none, axis=2).max() == 0 and none.min() < 200
 
 
 @pytest.mark.usefixtures("can_draw")
@@ -131,6 +138,7 @@ def test_vertices_at_one_place_keep_their_own_numbers() -> None:
     assert mixed.sum() < 200
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("can_draw")
 def test_the_legend_tells_numbers_of_meshes(mesh: nt.Mesh) -> None:
     height = mesh.vertices[:, 1]
@@ -144,6 +152,7 @@ def test_the_legend_tells_numbers_of_meshes(mesh: nt.Mesh) -> None:
     assert (pixels(named) == titled).all()
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("can_draw")
 def test_cells_and_meshes_have_one_scale(mesh: nt.Mesh) -> None:
     cell = mesh.cell

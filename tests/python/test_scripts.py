@@ -37,6 +37,7 @@ def test_numbers_of_points_are_on_the_membrane_and_in_files(cell: nt.Morphology,
     assert np.isnan(read.attributes["phase"][~on_neurites]).all()
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("can_draw")
 def test_a_recording_without_a_circuit_is_filmed_on_its_cell(circuit_folder: Path) -> None:
     circuit = nt.Circuit(circuit_folder)
@@ -76,6 +77,7 @@ def test_trimesh_goes_in_and_out_with_its_numbers(cell: nt.Morphology) -> None:
     assert (np.asarray(nt.render(theirs, values=mesh.path_distance, **SMALL)) == ours).all()
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("can_draw")
 def test_one_figure_has_cells_and_a_mesh_with_numbers(cell: nt.Morphology) -> None:
     region = nt.Mesh.from_arrays([[0, 0, 0], [200, 0, 0], [0, 200, 0], [0, 0, 200]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -95,6 +97,7 @@ def test_a_batch_of_meshes_keeps_a_number_for_each_vertex(tmp_path: Path) -> Non
     assert len(made) == 2 and all(mesh.attributes["distance"].max() > 10 for mesh in made)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("can_draw")
 def test_a_mesh_is_turned_in_a_film_with_its_colors(cell: nt.Morphology) -> None:
     mesh = nt.mesh(cell, level=1)
