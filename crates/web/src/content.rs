@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
-use neurotess_color::OwnColors;
+use neurotess_color::{ColorBy, OwnColors};
 use neurotess_render::color::{ColorMap, Palette, Rgb};
 use neurotess_render::usual_least_width;
 use serde::Serialize;
@@ -75,6 +75,8 @@ pub struct CellsText {
     pub text: String,
     /// Number of tracing points.
     pub points: usize,
+    /// What they can be colored by, with the entries of each legend; scales of numbers have none.
+    pub legends: Vec<(ColorBy, Vec<String>)>,
 }
 
 /// Slower than what is usual for the best, and a hundredth smaller.
@@ -117,6 +119,7 @@ pub(crate) fn cells_text(
         let most = MAX_PATCHES;
         return Err(WebError::TooManyPatches { patches, most });
     }
+    let legends = schemes.iter().map(PageScheme::entries).collect();
     let schemes = schemes.iter();
     let data = PageData {
         title: options.title.clone(),
@@ -137,6 +140,7 @@ pub(crate) fn cells_text(
     Ok(CellsText {
         text: packed_text(&data, &arrays.bytes),
         points,
+        legends,
     })
 }
 

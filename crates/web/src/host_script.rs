@@ -63,6 +63,11 @@ pub(crate) fn dropping_script() -> String {
     script(&DROPPING)
 }
 
+/// A module for anywidget, which joins the page in a frame of a notebook with the kernel.
+pub fn widget_script() -> String {
+    minified::javascript(include_str!("../host/widget.js"))
+}
+
 fn script(modules: &[(&str, &str)]) -> String {
     let modules = modules.iter();
     modules.map(|(name, text)| module(name, text)).collect()

@@ -45,6 +45,8 @@ pub use content::{CellsText, MAX_KEYS, PageOptions};
 #[cfg(feature = "host")]
 pub use dropping::dropping_page;
 pub use error::WebError;
+#[cfg(feature = "host")]
+pub use host_script::widget_script;
 pub use markers::PageMarkers;
 #[cfg(feature = "host")]
 pub use page::{MAX_PAGE_BYTES, Page, page};

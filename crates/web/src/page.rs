@@ -5,6 +5,7 @@
 //! shaders, host/*.js ─▶ JSON and text ──┴─deflate, base 85─▶ page.html
 //! ```
 
+use neurotess_color::ColorBy;
 use serde::Serialize;
 
 use crate::base85::signs;
@@ -36,6 +37,8 @@ pub struct Page {
     pub host_bytes: usize,
     /// Number of tracing points.
     pub points: usize,
+    /// What cells can be colored by, with the entries of each legend; scales of numbers have none.
+    pub legends: Vec<(ColorBy, Vec<String>)>,
 }
 
 /// Pages are larger only if somebody insists: mail takes them, and browsers open them at once.
@@ -70,6 +73,7 @@ impl Page {
                 .replace(TITLE, &escaped(title)),
             host_bytes,
             points: cells.points,
+            legends: cells.legends.clone(),
         })
     }
 }

@@ -16,6 +16,15 @@ pub struct PageScheme<'s> {
     pub coloring: &'s Coloring,
 }
 
+impl PageScheme<'_> {
+    /// What colors tell, and the entries of the legend; none of a scale.
+    pub(crate) fn entries(&self) -> (ColorBy, Vec<String>) {
+        let is_scale = self.coloring.legend.range().is_some();
+        let things = self.coloring.things.iter().filter(|_| !is_scale);
+        (self.by, things.map(|t| t.target.to_string()).collect())
+    }
+}
+
 /// A scheme as the page's host reads it.
 #[derive(Debug, Serialize)]
 pub(crate) struct SchemeData {

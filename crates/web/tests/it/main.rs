@@ -6,6 +6,7 @@ mod contents;
 mod core;
 mod dropping;
 mod unpacked;
+mod widget;
 mod written;
 
 neurotess_testing::main!();
