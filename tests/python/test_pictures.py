@@ -313,6 +313,8 @@ def test_views_are_turned_picked_and_closed(cell: nt.Morphology) -> None:
     with pytest.raises(ValueError, match="color_by"):
         view.color_by = "mood"
     assert view.color_by == "radius" and view.image().size == (120, 90)
+    view.color_by = None
+    assert (np.asarray(view.image()) == whole).all()
     with pytest.raises(ValueError, match="report"):
         view.time = 3.0
     view.handle_event({"type": "resize", "width": 60, "height": 40, "ratio": 2.0})

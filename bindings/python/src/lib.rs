@@ -46,7 +46,7 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     #[cfg(feature = "render")]
     picture::add_to(module)?;
     #[cfg(feature = "render")]
-    module.add_function(wrap_pyfunction!(page::page, module)?)?;
+    page::add_to(module)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)
 }

@@ -13,7 +13,7 @@ use neurotess::circuit::{NodeRef, TimeAxis};
 use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnSeries, OwnValues};
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
-use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput};
+use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput, Picked};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -144,6 +144,21 @@ pub(crate) fn own_series(
     Ok((series, time))
 }
 
+/// What was picked, as all views tell it.
+pub(crate) fn picked_dict(py: Python<'_>, picked: Picked) -> PyResult<Bound<'_, PyDict>> {
+    let told = PyDict::new(py);
+    told.set_item("cell", picked.cell)?;
+    told.set_item("name", picked.name)?;
+    told.set_item("node_id", picked.node)?;
+    // As in meshes: 0 is the soma.
+    let section = picked.section.map_or(0, |section| section.0 + 1);
+    told.set_item("section", section)?;
+    told.set_item("section_index", i64::from(section) - 1)?;
+    told.set_item("sample", picked.sample)?;
+    told.set_item("position", picked.position.to_array())?;
+    Ok(told)
+}
+
 #[pymethods]
 impl Drawing {
     #[new]
@@ -241,20 +256,7 @@ impl Drawing {
             let drawing = shared.as_ref()?;
             drawing.1.pick(&camera, size, at, reach)
         })?;
-        let Some(picked) = picked else {
-            return Ok(None);
-        };
-        let told = PyDict::new(py);
-        told.set_item("cell", picked.cell)?;
-        told.set_item("name", picked.name)?;
-        told.set_item("node_id", picked.node)?;
-        // As in meshes: 0 is the soma.
-        let section = picked.section.map_or(0, |section| section.0 + 1);
-        told.set_item("section", section)?;
-        told.set_item("section_index", i64::from(section) - 1)?;
-        told.set_item("sample", picked.sample)?;
-        told.set_item("position", picked.position.to_array())?;
-        Ok(Some(told))
+        picked.map(|picked| picked_dict(py, picked)).transpose()
     }
 
     /// Gives back the memory on the device. Nothing can be drawn afterwards.

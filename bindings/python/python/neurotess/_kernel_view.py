@@ -18,12 +18,16 @@ if TYPE_CHECKING:
     from typing import Any
 
     from . import _neurotess
+    from ._live_view import Camera, Picked
+
     # The second is a part of the first: who evaluates annotations looks for it here.
     from ._typed import Drawable
 
 needed("jupyter_rfb", "notebook")
 from jupyter_rfb import RemoteFrameBuffer  # noqa: E402
-from traitlets import Float, Unicode, observe, validate  # noqa: E402
+from traitlets import observe, validate  # noqa: E402
+
+from ._live_view import LiveView, numbers_of  # noqa: E402
 
 #: Seconds without an event after which the full picture is drawn.
 REST = 0.25
@@ -35,7 +39,7 @@ REACH = 3.0
 CLICK = 4.0
 
 
-class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
+class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
     """Cells or a circuit in a notebook, drawn where the kernel runs: ``View(renderer="kernel")``.
 
     Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer. While something moves,
@@ -52,13 +56,8 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
     >>> view.on_pick = print                                         # doctest: +SKIP
     >>> view.color_by = "radius"                                     # doctest: +SKIP
 
-    `color_by` and `time` are traits: ``ipywidgets.link((slider, "value"), (view, "time"))`` links them.
+    `color_by` and `time` (ms) are traits: ``ipywidgets.link((slider, "value"), (view, "time"))`` links them.
     """
-
-    color_by = Unicode(None, allow_none=True)
-    """What colors tell, as in `render`. Setting it makes the scene anew."""
-    time = Float(None, allow_none=True)
-    """Time (ms) of the report that is shown; set to any time, it is that of the frame which shows then."""
 
     # What is closed may not have been made.
     _drawings: tuple[_neurotess.Drawing, _neurotess.Drawing] | None = None
@@ -84,8 +83,7 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
     ) -> None:
         super().__init__()
         self.css_width, self.css_height = f"{size[0]}px", f"{size[1]}px"
-        self.on_pick: Callable[[dict[str, Any] | None], object] | None = None
-        """What is called when something is clicked."""
+        self.on_pick: Callable[[Picked | None], object] | None = None
         # An iterator is drawn more than once.
         drawn: Any = what
         self._what = list(drawn) if hasattr(drawn, "__next__") else drawn
@@ -115,17 +113,6 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
             raise ValueError("there is no report and no times=, so there are no times")
         self._whole = True
 
-    def __setattr__(self, name: str, value: object) -> None:
-        # A misspelled property would be taken and do nothing.
-        if not (name.startswith("_") or hasattr(self, name)) and self.__dict__.get("_whole"):
-            from difflib import get_close_matches
-
-            known = [known for known in vars(KernelView) if not known.startswith("_")] + ["on_pick"]
-            near = get_close_matches(name, known, 1)
-            hint = f": did you mean {near[0]!r}?" if near else ""
-            raise AttributeError(f"a View has no {name!r}{hint}")
-        super().__setattr__(name, value)
-
     # What is shown
 
     @validate("color_by")
@@ -136,35 +123,24 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
             self._make(what)
         return what
 
-    @validate("time")
-    def _check_time(self, proposal: Any) -> float:
-        if not self._times or proposal["value"] is None:
-            raise ValueError("a time is set where there is a report, or values with times=")
-        step = self._times[1] - self._times[0] if len(self._times) > 1 else 1.0
-        frame = int((proposal["value"] - self._times[0]) / step + 1e-6)
-        return self._times[min(max(frame, 0), len(self._times) - 1)]
-
     @observe("time", "color_by")
     def _changed(self, _change: Any) -> None:
+        if self.color_by is None and self._shown_colors is not None:
+            # None is not checked.
+            self._make(None)
         if self._times and self.time is not None:
             self._picture = self._times.index(self.time)
         self._draw()
 
     @property
-    def times(self) -> list[float]:
-        """Times (ms) of the frames of the report or of `values`; none without."""
-        return list(self._times)
-
-    @property
-    def camera(self) -> tuple[Any, Any, Any, float]:
+    def camera(self) -> Camera:
         """Eye, target, direction upwards (µm), and the vertical angle of view (radians)."""
         eye, target, up, fov = self._camera
         return tuple(eye), tuple(target), tuple(up), fov
 
     @camera.setter
-    def camera(self, camera: tuple[Any, Any, Any, float]) -> None:
-        eye, target, up, fov = camera
-        self._camera = ([*map(float, eye)], [*map(float, target)], [*map(float, up)], float(fov))
+    def camera(self, camera: Camera) -> None:
+        self._camera = numbers_of(camera)
         self._draw()
 
     @property
@@ -318,7 +294,7 @@ class KernelView(RemoteFrameBuffer):  # type: ignore[misc]
         if self.on_pick is not None:
             self.on_pick(self.pick(*at))
 
-    def pick(self, x: float, y: float) -> dict[str, Any] | None:
+    def pick(self, x: float, y: float) -> Picked | None:
         """What is at a point of the view, or within three pixels of it; None if nothing is."""
         place = [x * self._ratio, y * self._ratio]
         return self._full.pick(self._seen_from(), self._pixel_size(), place, REACH * self._ratio)

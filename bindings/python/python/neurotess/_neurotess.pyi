@@ -6,6 +6,8 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ._live_view import Picked
+
 __all__ = [
     "__version__",
     "CAN_RENDER",
@@ -18,6 +20,8 @@ __all__ = [
     "Mesher",
     "Report",
     "Drawing",
+    "Page",
+    "WIDGET",
     "diff",
     "color_scale",
     "page",
@@ -27,6 +31,7 @@ __all__ = [
 
 __version__: str
 CAN_RENDER: bool
+WIDGET: str
 
 _Path = str | PathLike[str]
 
@@ -240,8 +245,21 @@ class Drawing:
     def draw(self, picture: int) -> NDArray[np.uint8]: ...
     def draw_from(self, picture: int, view: _View, size: list[int], samples: int) -> NDArray[np.uint8]: ...
     def camera(self, picture: int) -> _View: ...
-    def pick(self, view: _View, size: list[int], at: list[float], reach: float) -> dict[str, Any] | None: ...
+    def pick(self, view: _View, size: list[int], at: list[float], reach: float) -> Picked | None: ...
     def close(self) -> None: ...
+
+@final
+class Page:
+    @property
+    def html(self) -> str: ...
+    @property
+    def has_values(self) -> bool: ...
+    @property
+    def times(self) -> list[float]: ...
+    @property
+    def legends(self) -> list[tuple[str, list[str]]]: ...
+    def picked(self, key: int, position: list[float]) -> Picked | None: ...
+    def write(self, path: _Path, force: bool) -> None: ...
 
 def page(
     cells: list[Cell],
@@ -250,8 +268,7 @@ def page(
     keywords: dict[str, Any],
     values: tuple[list[tuple[NDArray[np.float32], float]], str, str] | None,
     series: _Series | None,
-    path: _Path | None,
     force: bool,
-) -> str | None: ...
+) -> Page: ...
 def color_scale(name: str) -> list[Any] | None: ...
 def png(pixels: NDArray[np.uint8], transparent: bool) -> bytes: ...

@@ -89,56 +89,81 @@ def html(
     >>> nt.html(nt.synth("granule", points=100), color_by="radius")[:15]
     '<!doctype html>'
     """
-    if not _neurotess.CAN_RENDER:
-        raise RenderError("this build makes no pages: build it with the feature 'render'")
-    if path is not None and not force and os.path.exists(path):
-        raise FileExistsError(f"{os.fspath(path)} exists: use force=True, or another name")
-    meshed = {"soma": soma, "ring": ring, "types": types, "radius_factor": radius_factor}
-    recipe = _options.recipe({**meshed, "radius": radius, "min_radius": min_radius})
-    chosen = dict(
-        zip(SELECTION, (nodes, node_set, population, region, sample, sample_seed), strict=True)
-    )
-    given = {
+    options: dict[str, Any] = {
         "color_by": color_by,
+        "values": values,
+        "times": times,
+        "values_title": values_title,
+        "unit": unit,
+        "range": range,
         "palette": palette,
         "colormap": colormap,
-        "range": range,
         "background": background,
+        "title": title,
         "least_width": least_width,
+        "radius_factor": radius_factor,
+        "radius": radius,
+        "min_radius": min_radius,
+        "soma": soma,
+        "ring": ring,
+        "types": types,
+        "nodes": nodes,
+        "node_set": node_set,
+        "population": population,
+        "region": region,
+        "sample": sample,
+        "sample_seed": sample_seed,
     }
-    keywords = {**_keywords(given), "title": title}
-    if color_by == "value" and values is None:
+    if path is not None and not force and os.path.exists(path):
+        raise FileExistsError(f"{os.fspath(path)} exists: use force=True, or another name")
+    made = page_of(what, options, force)
+    if path is None:
+        return made.html
+    from pathlib import Path
+
+    made.write(path, force)
+    return Path(path)
+
+
+#: Options of pages that say how cells are meshed, and what they begin with.
+MESHED = ("soma", "ring", "types", "radius_factor", "radius", "min_radius")
+LOOK = ("color_by", "palette", "colormap", "range", "background", "least_width")
+
+
+def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Page:
+    """The page with these options of `html`."""
+    if not _neurotess.CAN_RENDER:
+        raise RenderError("this build makes no pages: build it with the feature 'render'")
+    recipe = _options.recipe({name: options.get(name) for name in MESHED})
+    given = {name: options.get(name) for name in LOOK}
+    keywords = {**_keywords(given), "title": options.get("title")}
+    chosen = {name: options.get(name) for name in SELECTION}
+    values = options.get("values")
+    if given["color_by"] == "value" and values is None:
         raise OptionError("color_by='value' needs values=, too", "color_by", "values= is needed, too")
     circuit = None
     if isinstance(what, DrawnCircuit):
         if values is not None:
             raise ValueError("values= are of cells: make a page of them, as of [circuit.morphology(7)]")
-        nodes_of = _chosen(what, chosen)
-        circuit = what._circuit, what._rows(*[None] * 5, 1) if nodes_of is None else nodes_of
+        nodes = _chosen(what, chosen)
+        circuit = what._circuit, what._rows(*[None] * 5, 1) if nodes is None else nodes
         cells = []
     else:
         cells = _cells(what, chosen)
-    still, series = _told(cells, is_alone(what), values, times, values_title, unit)
+    still, series = _told(cells, is_alone(what), options)
     try:
-        made = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, path, force)
+        return _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, force)
     except OptionError as error:
         from ._errors import with_given
 
         raise with_given(error, given) from None
-    if path is None:
-        assert made is not None
-        return made
-    from pathlib import Path
-
-    return Path(path)
 
 
-def _told(
-    cells: list[Any], alone: bool, values: Any, times: Any, title: str | None, unit: str | None
-) -> Told:
-    if values is None and title is not None:
+def _told(cells: list[Any], alone: bool, options: Mapping[str, Any]) -> Told:
+    title, own = options.get("values_title"), {name: options.get(name) for name in ("values", "times", "unit")}
+    if own["values"] is None and title is not None:
         raise ValueError(f"values_title={title!r} is of values: give values=, too")
-    return values_of(cells, alone, {"values": values, "times": times, "title": title, "unit": unit})
+    return values_of(cells, alone, {**own, "title": title})
 
 
 def _keywords(given: dict[str, Any]) -> dict[str, Any]:

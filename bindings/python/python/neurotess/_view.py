@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ._pages import html
+from ._frame import framed, saved
+from ._pages import page_of
 from ._pictures import render
 from ._scene import DrawnCircuit, _cells, _chosen, check_names
 from ._sources import is_alone
@@ -23,6 +24,9 @@ POINT_BYTES = 28
 #: Most cells of a circuit, each of which a page stores by itself.
 MOST_CELLS = 50
 
+#: What installs all that views need.
+INSTALL = "pip install 'neurotess[notebook]'"
+
 #: Options of `render` that pages have, by their names there.
 PAGE = {
     name: name
@@ -37,14 +41,17 @@ PAGE = {
 class View:
     """Cells or a circuit in a notebook, to be turned, colored and pointed at.
 
-    ``renderer="browser"``: the page of `html` in the notebook. The browser draws it, so it needs neither a graphics
-    driver nor another package where the kernel runs, and stays in the notebook that is saved or exported. It is what you
-    get where all options are such as pages have and the page would have up to 20 MB, of circuits up to 50 cells.
+    ``renderer="browser"``: the page of `html` in the notebook. The browser draws it, so it needs no graphics driver where
+    the kernel runs, and it stays in the notebook that is saved or exported. It is what you get where all options are such
+    as pages have and the page would have up to 20 MB, of circuits up to 50 cells.
 
-    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, with a `report`, and with
-    ``view.camera``, ``view.time``, ``view.color_by``, ``view.on_pick`` and ``view.image()``. It needs
-    ``pip install neurotess[notebook]``. Drag to turn, drag with Shift or the right button to move, use the wheel to come
-    nearer; a double click shows all again.
+    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, with a `report`. Drag to turn,
+    drag with Shift or the right button to move, use the wheel to come nearer; a double click shows all again.
+
+    With ``pip install neurotess[notebook]`` both have ``view.camera``, ``view.orthographic``, ``view.color_by``,
+    ``view.time`` with ``view.times``, and ``view.on_pick``, which is called with what is clicked. The browser's has
+    ``view.hide("axon")``, ``view.show()``, ``view.hidden`` and ``view.legend``, too, and the kernel's ``view.image()`` and
+    ``view.pick(x, y)``. Without these packages the browser's view is the page alone.
 
     `what` and the options are those of `render`; `size` is in pixels of the page.
 
@@ -71,39 +78,37 @@ class View:
             raise ValueError(f"renderer={renderer!r}: 'browser' or 'kernel' is needed")
         check_names("View", render, options)
         shown = _read(what)
-        others = [name for name, value in options.items() if name not in PAGE and value not in (None, False)]
+        known = {*PAGE, "time"} if _can_live() else PAGE
+        others = [name for name, value in options.items() if name not in known and value not in (None, False)]
         if renderer == "browser" and others:
-            raise ValueError(f"{others[0]}= is of views that the kernel draws: leave one of the two out")
+            where = f"needs anywidget ({INSTALL})" if others[0] == "time" else "is of views that the kernel draws"
+            raise ValueError(f"{others[0]}= {where}: leave one of the two out")
         page = None
         if renderer == "browser" or (renderer is None and not others and _is_small(shown, options)):
             named = {PAGE[name]: value for name, value in options.items() if name in PAGE}
-            page = html(shown, **named, force=True)
-        if page is None or (renderer is None and len(page) > MOST_BYTES):
+            page = page_of(shown, named, force=True)
+        if page is None or (renderer is None and len(page.html) > MOST_BYTES):
             from ._kernel_view import KernelView
 
             return KernelView(shown, size=size, **options)
+        if _can_live():
+            from ._browser_view import BrowserView
+
+            return BrowserView(page, size=size, color_by=options.get("color_by"), time=options.get("time"))
         view = super().__new__(cls)
-        object.__setattr__(view, "html", page)
+        object.__setattr__(view, "html", page.html)
         object.__setattr__(view, "size", (int(size[0]), int(size[1])))
         return view
 
     def _repr_html_(self) -> str:
-        """The page in a frame. What it holds means nothing in HTML but for two signs."""
-        text = self.html.replace("&", "&amp;").replace('"', "&quot;")
-        width, height = self.size
-        style = f"width:{width}px;max-width:100%;height:{height}px;border:0"
-        return f'<iframe title="Cells in three dimensions" style="{style}" srcdoc="{text}"></iframe>'
+        return framed(self.html, self.size)
 
     def __repr__(self) -> str:
         return f"<neurotess.View of {len(self.html) / 1000:.0f} kB, drawn by the browser>"
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Writes the page to a file, which must not exist."""
-        from pathlib import Path
-
-        with open(path, "x", encoding="utf-8", newline="\n") as file:
-            file.write(self.html)
-        return Path(path)
+        return saved(self.html, path)
 
     def close(self) -> None:
         """Does nothing here: a view that the kernel draws gives back its memory."""
@@ -131,7 +136,16 @@ def _is_small(shown: Any, options: dict[str, Any]) -> bool:
     return POINT_BYTES * sum(len(cell.points) for cell in cells) <= MOST_BYTES
 
 
+def _can_live() -> bool:
+    """Whether what the browser draws can be joined with the kernel."""
+    from importlib.util import find_spec
+
+    return find_spec("anywidget") is not None
+
+
 def _missing(name: str) -> str:
-    if name in ("camera", "color_by", "image", "on_pick", "orthographic", "pick", "time", "times"):
+    if name in ("camera", "color_by", "hidden", "hide", "legend", "on_pick", "orthographic", "show", "time", "times"):
+        return f"{name!r} of a View that the browser draws needs anywidget: {INSTALL}; or use renderer='kernel'"
+    if name in ("image", "pick"):
         return f"a View that the browser draws has no {name!r}: use renderer='kernel'"
     return f"a View has no {name!r}"

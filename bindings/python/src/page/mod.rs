@@ -1,0 +1,260 @@
+//! Cells as one HTML page: `neurotess html`, of cells in memory.
+
+mod colors;
+mod shown;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use glam::DVec3;
+use neurotess::coloring::{self, ColorScheme, OwnSeries, OwnValues, Recording};
+use neurotess::mesh::{CoarseMesh, Role};
+use neurotess::morphology::SectionId;
+use neurotess::output::{Existing, write_whole};
+use neurotess::render::Look;
+use neurotess::web::{
+    self, MAX_PAGE_BYTES, PageMarkers, PageOptions, PageRecording, WebError, shared_page,
+    usual_title,
+};
+use neurotess_cli::embed::{self, Picked};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::cell::Cell;
+use crate::circuit::Circuit;
+use crate::errors;
+use crate::picture::{GivenSeries, GivenValues, own_series, own_values, picked_dict};
+use crate::surface::Recipe;
+use crate::work::{Stop, stoppable};
+use colors::{Colors, Keywords};
+use shown::{Placed, Shown};
+
+/// Adds what makes pages to the module.
+pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("WIDGET", web::widget_script())?;
+    module.add_class::<Page>()?;
+    module.add_function(wrap_pyfunction!(page, module)?)
+}
+
+/// A circuit, and population and row of the nodes that are shown.
+type GivenNodes<'py> = (PyRef<'py, Circuit>, Vec<(u32, u32)>);
+
+/// Numbers of one's own.
+enum Own {
+    Still(OwnValues),
+    OverTime(OwnSeries),
+}
+
+impl Own {
+    /// Numbers as a page plays them; `range`: those at the ends of the scale, if they are not the least and the greatest.
+    fn recording(
+        self,
+        cells: &[coloring::Cell<'_>],
+        range: Option<[f32; 2]>,
+    ) -> Result<PageRecording, Unmade> {
+        match self {
+            Self::Still(values) => Ok(PageRecording::still(cells, &values, range)),
+            Self::OverTime(series) => {
+                let own: Vec<usize> = (0..cells.len()).collect();
+                let recording = Recording::of_series(series, cells, &own);
+                embed::page_recording(&recording, None, range, cells.len())
+                    .map_err(|e| Unmade::Values(e.to_string()))
+            }
+        }
+    }
+}
+
+/// Why there is no page.
+enum Unmade {
+    /// A cell has no mesh.
+    Mesh(String),
+    /// Cells that a page cannot show.
+    Page(WebError),
+    /// Numbers that cannot be shown.
+    Values(String),
+    /// More than people send.
+    Large(usize),
+}
+
+/// A page, and what its host does not know of its cells.
+#[pyclass(frozen, module = "neurotess._neurotess")]
+pub(crate) struct Page {
+    made: web::Page,
+    /// Whether it holds values.
+    #[pyo3(get)]
+    has_values: bool,
+    /// Times (ms) of the frames that are played.
+    #[pyo3(get)]
+    times: Vec<f64>,
+    /// The cells at their places.
+    placed: Vec<Placed>,
+    /// By mesh, of each of its tracing points: section and the file's own number of its sample; none on somata.
+    points: Vec<Vec<Option<(SectionId, i64)>>>,
+}
+
+#[pymethods]
+impl Page {
+    /// The page's text.
+    #[getter]
+    fn html(&self) -> &str {
+        &self.made.html
+    }
+
+    /// What it can be colored by, with the entries of each legend; scales of numbers have none.
+    #[getter]
+    fn legends(&self) -> Vec<(&'static str, Vec<String>)> {
+        let legends = self.made.legends.iter();
+        legends
+            .map(|(by, entries)| (colors::name_of(*by), entries.clone()))
+            .collect()
+    }
+
+    /// What is at a tracing point, by its color key; none if there is no such point.
+    fn picked<'py>(
+        &self,
+        py: Python<'py>,
+        key: usize,
+        position: [f64; 3],
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let mut first = 0;
+        for (cell, placed) in self.placed.iter().enumerate() {
+            let points = &self.points[placed.cell];
+            if let Some(point) = points.get(key - first) {
+                let picked = Picked {
+                    cell,
+                    name: placed.name.clone(),
+                    node: placed.node.map(|(_, id)| id),
+                    section: point.map(|(section, _)| section),
+                    sample: point.map(|(_, sample)| sample),
+                    position: DVec3::from(position),
+                };
+                return picked_dict(py, picked).map(Some);
+            }
+            first += points.len();
+        }
+        Ok(None)
+    }
+
+    /// Writes it to a file, whole or not at all. `force`: also over one that exists.
+    fn write(&self, py: Python<'_>, path: PathBuf, force: bool) -> PyResult<()> {
+        let existing = match force {
+            true => Existing::Replace,
+            false => Existing::Refuse("use force=True, or another name"),
+        };
+        let html = self.made.html.as_bytes();
+        let written = py.detach(|| write_whole(&path, existing, |to| to.write_all(html)));
+        written.map_err(|e| errors::output(&e))
+    }
+}
+
+/// Makes a page of cells, or of nodes of a circuit. `force`: also a large one.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "what a page is made of")]
+fn page(
+    py: Python<'_>,
+    cells: Vec<PyRef<'_, Cell>>,
+    circuit: Option<GivenNodes<'_>>,
+    recipe: &Recipe,
+    keywords: Keywords,
+    values: Option<GivenValues<'_>>,
+    series: Option<GivenSeries<'_>>,
+    force: bool,
+) -> PyResult<Page> {
+    let colors = Colors::of(&keywords).map_err(|e| errors::option(py, &e))?;
+    let values = values.map(own_values).transpose()?;
+    let series = series.map(own_series).transpose()?;
+    let own = match (series, values) {
+        (Some((series, _)), _) => Some(Own::OverTime(series)),
+        (None, values) => values.map(Own::Still),
+    };
+    let shown = match circuit {
+        Some((circuit, nodes)) => Shown::nodes(py, &circuit, nodes)?,
+        None => Shown::alone(&cells),
+    };
+    let options = recipe.0.generate.clone();
+    let made = stoppable(py, None, &Stop::default(), move |stopped| {
+        let meshes = shown.meshes(&options, stopped)?;
+        let factor = options.radius_factor;
+        let page = Page::of(shown, &meshes, factor, &keywords, colors, own)?;
+        match page.made.html.len() {
+            bytes if bytes > MAX_PAGE_BYTES && !force => Err(Unmade::Large(bytes)),
+            _ => Ok(page),
+        }
+    })?;
+    made.map_err(|e| e.told(py))
+}
+
+impl Page {
+    fn of(
+        shown: Shown,
+        meshes: &[CoarseMesh],
+        radius_factor: f64,
+        keywords: &Keywords,
+        colors: Colors,
+        own: Option<Own>,
+    ) -> Result<Self, Unmade> {
+        let cells = shown.page_cells(meshes, radius_factor);
+        let colored: Vec<_> = cells.iter().map(|page| page.cell).collect();
+        let recording = own.map(|own| own.recording(&colored, keywords.range));
+        let recording = recording.transpose()?;
+        let scheme = ColorScheme {
+            palette: colors.palette,
+            own_colors: colors.own_colors.clone(),
+            background: None,
+            scale: colors.color_map.scale(),
+            range: keywords.range.filter(|_| recording.is_none()),
+        };
+        let names: Vec<&str> = colored.iter().map(|cell| cell.name).collect();
+        let title = keywords.title.clone();
+        let options = PageOptions {
+            title: title.unwrap_or_else(|| usual_title(&names)),
+            background: colors.background,
+            palette: colors.palette,
+            own_colors: colors.own_colors,
+            color_map: colors.color_map,
+            scheme: None,
+            least_width: (keywords.least_width)
+                .unwrap_or_else(|| Look::usual_least_width(cells.len())),
+        };
+        let none = PageMarkers::default();
+        let played = recording.as_ref();
+        let made = shared_page(&cells, &scheme, colors.first, played, &none, &options);
+        Ok(Self {
+            made: made.map_err(Unmade::Page)?,
+            has_values: recording.is_some(),
+            times: recording
+                .map(|recording| recording.times)
+                .unwrap_or_default(),
+            placed: shown.placed,
+            points: meshes.iter().map(traced).collect(),
+        })
+    }
+}
+
+/// Section and sample of each tracing point; none on somata.
+fn traced(mesh: &CoarseMesh) -> Vec<Option<(SectionId, i64)>> {
+    let points = mesh.tracing.iter();
+    let traced = points.map(|point| {
+        let section = point.section.index().filter(|_| point.role != Role::Soma);
+        section.map(|section| (SectionId(section as u32), i64::from(point.sample.0)))
+    });
+    traced.collect()
+}
+
+impl Unmade {
+    fn told(self, py: Python<'_>) -> PyErr {
+        match self {
+            Self::Mesh(message) => errors::mesh(py, &message),
+            Self::Values(message) => PyValueError::new_err(message),
+            Self::Page(WebError::Shader(fault)) => errors::bug(fault),
+            Self::Page(error) => PyValueError::new_err(error.to_string()),
+            Self::Large(bytes) => {
+                let size = bytes as f64 / 1e6;
+                PyValueError::new_err(format!(
+                    "the page would have {size:.1} MB: leave out cells, or use force=True"
+                ))
+            }
+        }
+    }
+}
