@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use neurotess::circuit::{NodeRef, TimeAxis};
-use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnSeries, OwnValues};
+use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnNumbers, OwnSeries, OwnValues};
 use neurotess::render::color::{ColorMap, Rgb};
 use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput, Picked};
@@ -72,7 +72,7 @@ type GivenCircuit = (PathBuf, Option<Vec<(u32, u32)>>);
 /// By cell the numbers of its points and that of its somata; what they are, and their unit.
 pub(crate) type GivenValues<'py> = (Vec<(PyReadonlyArray1<'py, f32>, f32)>, String, String);
 
-pub(crate) fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnValues> {
+fn own_values((cells, title, unit): GivenValues<'_>) -> PyResult<OwnValues> {
     let of_cell = |(points, soma): &(PyReadonlyArray1<'_, f32>, f32)| {
         Ok(CellValues {
             points: points.as_slice()?.to_vec(),
@@ -113,7 +113,7 @@ pub(crate) type GivenSeries<'py> = (
     Option<String>,
 );
 
-pub(crate) fn own_series(
+fn own_series(
     (cells, [start, step], title, unit, time): GivenSeries<'_>,
 ) -> PyResult<(OwnSeries, Option<String>)> {
     let column = |column: i32| u32::try_from(column).ok();
@@ -142,6 +142,19 @@ pub(crate) fn own_series(
         unit,
     };
     Ok((series, time))
+}
+
+/// Numbers of one's own, if there are any; times of pictures.
+pub(crate) fn own_numbers(
+    values: Option<GivenValues<'_>>,
+    series: Option<GivenSeries<'_>>,
+) -> PyResult<(Option<OwnNumbers>, Option<String>)> {
+    if let Some(series) = series {
+        let (series, time) = own_series(series)?;
+        return Ok((Some(OwnNumbers::OverTime(series)), time));
+    }
+    let values = values.map(own_values).transpose()?;
+    Ok((values.map(OwnNumbers::Still), None))
 }
 
 /// What was picked, as all views tell it.
@@ -174,11 +187,10 @@ impl Drawing {
         scale: Option<Vec<Rgb>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
-        let values = values.map(own_values).transpose()?;
-        let series = series.map(own_series).transpose()?;
+        let (own, time) = own_numbers(values, series)?;
         let colors = DrawingColors {
-            values,
-            series,
+            own,
+            time,
             meshes: meshes.map(mesh_values).transpose()?,
             scale,
         };

@@ -24,6 +24,7 @@ mod markers;
 mod meshes;
 mod own_colors;
 #[cfg(feature = "circuit")]
+mod own_numbers;
 mod own_series;
 mod own_values;
 mod palette_file;
@@ -54,6 +55,7 @@ pub use markers::{
 pub use meshes::{MeshValues, mesh_color};
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
 #[cfg(feature = "circuit")]
+pub use own_numbers::OwnNumbers;
 pub use own_series::{CellSeries, OwnSeries};
 pub use own_values::{CellValues, OwnValues, by_values};
 pub use palette_file::{PaletteError, PaletteFile};

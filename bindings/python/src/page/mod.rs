@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use neurotess::coloring::{self, ColorScheme, OwnSeries, OwnValues, Recording};
+use neurotess::coloring::{self, ColorScheme, OwnNumbers, Recording};
 use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::morphology::SectionId;
 use neurotess::output::{Existing, write_whole};
@@ -24,7 +24,7 @@ use pyo3::types::PyDict;
 use crate::cell::Cell;
 use crate::circuit::Circuit;
 use crate::errors;
-use crate::picture::{GivenSeries, GivenValues, own_series, own_values, picked_dict};
+use crate::picture::{GivenSeries, GivenValues, own_numbers, picked_dict};
 use crate::surface::Recipe;
 use crate::work::{Stop, stoppable};
 use colors::{Colors, Keywords};
@@ -39,31 +39,6 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// A circuit, and population and row of the nodes that are shown.
 type GivenNodes<'py> = (PyRef<'py, Circuit>, Vec<(u32, u32)>);
-
-/// Numbers of one's own.
-enum Own {
-    Still(OwnValues),
-    OverTime(OwnSeries),
-}
-
-impl Own {
-    /// Numbers as a page plays them; `range`: those at the ends of the scale, if they are not the least and the greatest.
-    fn recording(
-        self,
-        cells: &[coloring::Cell<'_>],
-        range: Option<[f32; 2]>,
-    ) -> Result<PageRecording, Unmade> {
-        match self {
-            Self::Still(values) => Ok(PageRecording::still(cells, &values, range)),
-            Self::OverTime(series) => {
-                let own: Vec<usize> = (0..cells.len()).collect();
-                let recording = Recording::of_series(series, cells, &own);
-                embed::page_recording(&recording, None, range, cells.len())
-                    .map_err(|e| Unmade::Values(e.to_string()))
-            }
-        }
-    }
-}
 
 /// Why there is no page.
 enum Unmade {
@@ -162,12 +137,7 @@ fn page(
     force: bool,
 ) -> PyResult<Page> {
     let colors = Colors::of(&keywords).map_err(|e| errors::option(py, &e))?;
-    let values = values.map(own_values).transpose()?;
-    let series = series.map(own_series).transpose()?;
-    let own = match (series, values) {
-        (Some((series, _)), _) => Some(Own::OverTime(series)),
-        (None, values) => values.map(Own::Still),
-    };
+    let (own, _) = own_numbers(values, series)?;
     let shown = match circuit {
         Some((circuit, nodes)) => Shown::nodes(py, &circuit, nodes)?,
         None => Shown::alone(&cells),
@@ -192,11 +162,11 @@ impl Page {
         radius_factor: f64,
         keywords: &Keywords,
         colors: Colors,
-        own: Option<Own>,
+        own: Option<OwnNumbers>,
     ) -> Result<Self, Unmade> {
         let cells = shown.page_cells(meshes, radius_factor);
         let colored: Vec<_> = cells.iter().map(|page| page.cell).collect();
-        let recording = own.map(|own| own.recording(&colored, keywords.range));
+        let recording = own.map(|own| played(own, &colored, keywords.range));
         let recording = recording.transpose()?;
         let scheme = ColorScheme {
             palette: colors.palette,
@@ -218,8 +188,8 @@ impl Page {
                 .unwrap_or_else(|| Look::usual_least_width(cells.len())),
         };
         let none = PageMarkers::default();
-        let played = recording.as_ref();
-        let made = shared_page(&cells, &scheme, colors.first, played, &none, &options);
+        let values = recording.as_ref();
+        let made = shared_page(&cells, &scheme, colors.first, values, &none, &options);
         Ok(Self {
             made: made.map_err(Unmade::Page)?,
             has_values: recording.is_some(),
@@ -229,6 +199,23 @@ impl Page {
             placed: shown.placed,
             points: meshes.iter().map(traced).collect(),
         })
+    }
+}
+
+/// Numbers as a page plays them; `range`: those at the ends of the scale, if they are not the least and the greatest.
+fn played(
+    own: OwnNumbers,
+    cells: &[coloring::Cell<'_>],
+    range: Option<[f32; 2]>,
+) -> Result<PageRecording, Unmade> {
+    match own {
+        OwnNumbers::Still(values) => Ok(PageRecording::still(cells, &values, range)),
+        OwnNumbers::OverTime(series) => {
+            let all: Vec<usize> = (0..cells.len()).collect();
+            let recording = Recording::of_series(series, cells, &all);
+            embed::page_recording(&recording, None, range, cells.len())
+                .map_err(|e| Unmade::Values(e.to_string()))
+        }
     }
 }
 

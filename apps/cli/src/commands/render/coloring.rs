@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Context;
 use neurotess::coloring::{
     self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet,
-    MeshValues, OwnSeries, OwnValues, Recording, by_attribute, by_values,
+    MeshValues, OwnNumbers, Recording, by_attribute, by_values,
 };
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
@@ -151,14 +151,6 @@ impl PictureColors {
     }
 }
 
-/// Numbers of one's own.
-pub(crate) enum OwnNumbers<'a> {
-    /// That do not change.
-    Still(&'a OwnValues),
-    /// Over time.
-    OverTime(Box<OwnSeries>),
-}
-
 /// Colors of cells: by the options, or by numbers of one's `own`. `instances`: those of a circuit; `of_cells`: the cell
 /// that each instance shows.
 ///
@@ -168,7 +160,7 @@ pub(crate) fn of_pictures(
     cells: &[&MeshedCell],
     (instances, of_cells): (Option<&CircuitInstances>, &[usize]),
     args: &RenderArgs,
-    own: Option<OwnNumbers<'_>>,
+    own: Option<OwnNumbers>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
     let scheme = scheme(args);
@@ -190,7 +182,7 @@ pub(crate) fn of_pictures(
     };
     let mut colored = match (&args.report, series, instances) {
         (_, Some(series), _) => {
-            let recording = Recording::of_series(*series, &cells, of_cells);
+            let recording = Recording::of_series(series, &cells, of_cells);
             over_time(recording, args, &scheme, reporter)?
         }
         (Some(report), _, Some(instances)) => {
@@ -201,7 +193,7 @@ pub(crate) fn of_pictures(
         }
         _ => {
             let coloring = match (values, instances) {
-                (Some(values), _) => Some(by_values(&cells, values, &scheme)),
+                (Some(values), _) => Some(by_values(&cells, &values, &scheme)),
                 (None, Some(instances)) => of_circuit(&cells, instances, args, &scheme)?,
                 (None, None) => None,
             };

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Parser;
 use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
-use neurotess::coloring::{MarkerSet, MeshValues, OwnSeries, OwnValues};
+use neurotess::coloring::{MarkerSet, MeshValues, OwnNumbers};
 use neurotess::morphology::{Morphology, SectionId, shape};
 use neurotess::render::color::Rgb;
 use neurotess::render::overlay::Overlay;
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::args::RenderArgs;
 use super::cells::{self, MeshedCell};
 use super::circuit_instances::CircuitInstances;
-use super::coloring::{OwnNumbers, PictureColors};
+use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
@@ -52,9 +52,9 @@ pub enum DrawingInput<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct DrawingColors {
     /// Numbers of the cells, which they are colored by.
-    pub values: Option<OwnValues>,
-    /// Numbers of the cells over time, instead, and the times of the pictures, as `--time` has them.
-    pub series: Option<(OwnSeries, Option<String>)>,
+    pub own: Option<OwnNumbers>,
+    /// Of numbers over time the times of the pictures, as `--time` has them.
+    pub time: Option<String>,
     /// Numbers of the meshes beside the cells, in the order of the options.
     pub meshes: Option<MeshValues>,
     /// Colors of numbers, instead of a color map.
@@ -124,18 +124,18 @@ impl Drawing {
             args.cells.list(nodes);
         }
         args.scale = colors.scale;
-        let (series, time) = colors.series.unzip();
-        if let Some(time) = time.flatten() {
+        if let Some(time) = colors.time {
             args.time = Some(time.parse().map_err(DrawError::Option)?);
         }
-        let own = match (series, &colors.values) {
-            (Some(series), _) => Some(OwnNumbers::OverTime(Box::new(series))),
-            (None, Some(values)) => Some(OwnNumbers::Still(values)),
-            (None, None) => None,
-        };
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
-        let made = Self::made(gpu, input, args, (own, colors.meshes.as_ref()), &reporter);
+        let made = Self::made(
+            gpu,
+            input,
+            args,
+            (colors.own, colors.meshes.as_ref()),
+            &reporter,
+        );
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),
@@ -151,7 +151,7 @@ impl Drawing {
         gpu: &Gpu,
         input: DrawingInput<'_>,
         args: Box<RenderArgs>,
-        (own, of_meshes): (Option<OwnNumbers<'_>>, Option<&MeshValues>),
+        (own, of_meshes): (Option<OwnNumbers>, Option<&MeshValues>),
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
         vertex_source::mode(&args)?;
