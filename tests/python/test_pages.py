@@ -77,6 +77,44 @@ def test_circuits_have_pages(circuit_folder: Path, tmp_path: Path) -> None:
         nt.html([circuit])
 
 
+def test_reports_and_markers_are_those_of_the_command(circuit_folder: Path, samples: Path, tmp_path: Path) -> None:
+    circuit, two = nt.Circuit(circuit_folder), ["--nodes", "0-1"]
+    voltage = circuit.reports["voltage"]
+    spines = tmp_path / "spines.csv"
+    spines.write_text("x,y,z,age\n0,0,0,1\n10,0,0,2\n")
+    synapses = ["--synapses", "--synapse-side", "afferent", "--marker-color-by", "delay", "--marker-size", "3"]
+    cases: list[tuple[dict[str, Any], list[str | Path]]] = [
+        ({"report": "voltage"}, ["--report", voltage]),
+        ({"report": voltage, "time": 3, "range": (-80, 0)}, ["--report", voltage, "--time", "3", "--range", "-80,0"]),
+        ({"report": "voltage", "time": (0, 4, 0.5), "color_by": "type"}, ["--report", voltage, "--time", "0:4:0.5", "--color-by", "type"]),
+        ({"synapses": True, "synapse_side": "afferent", "marker_color_by": "delay", "marker_size": 3}, [*synapses]),
+        ({"markers": {"points": spines, "color_by": "age"}}, ["--points", spines, "--marker-color-by", "age"]),
+    ]
+    pages = {circuit.to_html(nodes=[0, 1])}
+    for options, words in cases:
+        pages.add(circuit.to_html(nodes=[0, 1], **options))
+        assert nt.html(circuit, nodes=[0, 1], **options) == of_command(tmp_path, circuit_folder, *two, *words), options
+    assert len(pages) == 1 + len(cases)
+    star = samples / "star.swc"
+    assert nt.html(star, points=spines) == of_command(tmp_path, star, "--points", spines)
+    wrong: list[tuple[Any, dict[str, Any], str]] = [
+        (star, {"report": "voltage.h5"}, "report needs a circuit"),
+        (circuit, {"time": 3}, "time= needs report="),
+        (circuit, {"report": "voltage", "time": (0, 4)}, r"^time=\(0, 4\): a time \(ms\) or \(from, to, step\) is needed"),
+        (star, {"synapses": True}, "synapses needs a circuit"),
+        (star, {"marker_size": 2}, "marker_size and marker_shape are for synapses or points"),
+        (star, {"points": spines, "marker_size": -2}, r"^marker_size=-2: a number above 0"),
+        (star, {"markers": {"points": spines, "shape": "point"}}, "markers of pages are spheres"),
+        (star, {"color_by": "value"}, r"^color_by='value' needs values= or report="),
+    ]
+    for what, options, message in wrong:
+        with pytest.raises(ValueError, match=message):
+            nt.html(what, **options)
+    for options in ({"points": "none.csv"}, {"report": "none.h5"}):
+        with pytest.raises(nt.MissingFileError):
+            nt.html(circuit, **options)
+
+
 def test_values_of_ones_own_are_in_the_page(cell: nt.Morphology) -> None:
     plain = nt.html(cell)
     far = cell.path_distances()

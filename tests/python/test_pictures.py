@@ -329,7 +329,7 @@ def test_views_show_times(circuit_folder: Path) -> None:
     pytest.importorskip("jupyter_rfb")
     circuit = nt.Circuit(circuit_folder)
     name = next(n for n, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
-    view = nt.View(circuit, report=name, size=(80, 60), samples=1, nodes=[0, 1])
+    view = nt.View(circuit, report=name, renderer="kernel", size=(80, 60), samples=1, nodes=[0, 1])
     times = circuit.report(name).times
     assert view.times == times.tolist() and view.time == times[0]
     frames = {np.asarray(view.image()).tobytes()}

@@ -88,6 +88,9 @@ def test_views_that_pages_cannot_show_are_drawn_by_the_kernel(
 def test_views_of_few_cells_of_a_circuit_are_pages(circuit_folder: Path) -> None:
     circuit = nt.Circuit(circuit_folder)
     assert nt.View(circuit, nodes=[0, 1]).html == circuit.to_html(nodes=[0, 1])
+    shown = {"nodes": [0, 1], "report": "voltage"}
+    view = nt.View(circuit, **shown, markers={"synapses": True, "size": 2})
+    assert view.html == circuit.to_html(**shown, synapses=True, marker_size=2)
 
 
 def test_views_without_anywidget_say_what_they_need(cell: nt.Morphology, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,6 +163,14 @@ def test_views_have_the_properties_of_those_that_the_kernel_draws(cell: nt.Morph
     with pytest.raises(ValueError, match="a time is set where there is a report"):
         nt.View(cell).time = 3
     view.close()
+
+
+def test_reports_have_times(circuit_folder: Path) -> None:
+    pytest.importorskip("anywidget")
+    circuit = nt.Circuit(circuit_folder)
+    view = nt.View(circuit, nodes=[0, 1], report="voltage", time=3.2)
+    assert view.color_by == "value" and view.time == 3.0 and len(view.times) == 200
+    assert view.times[:2] == circuit.report("voltage").times[:2].tolist()
 
 
 def test_clicks_are_told_as_the_kernel_tells_them(cell: nt.Morphology, circuit_folder: Path) -> None:

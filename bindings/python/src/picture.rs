@@ -370,7 +370,7 @@ fn closed() -> PyErr {
     PyRuntimeError::new_err("the view is closed")
 }
 
-fn undrawn(py: Python<'_>, error: &DrawError) -> PyErr {
+pub(crate) fn undrawn(py: Python<'_>, error: &DrawError) -> PyErr {
     match error {
         DrawError::Option(message) => errors::option(py, message),
         DrawError::Failed(message) => errors::render(py, message),

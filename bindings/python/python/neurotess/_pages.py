@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 from . import _neurotess, _options
-from ._errors import OptionError, RenderError
+from ._errors import NeurotessWarning, OptionError, RenderError, missing_file
+from ._groups import ungrouped
 from ._scene import SELECTION, DrawnCircuit, _cells, _chosen, _with_colors
 from ._sources import is_alone
 from ._values import values_of
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
     from ._colors import Color
     from ._nodes import Nodes
-    from ._typed import ColorBy, Drawable, OwnColormap, PageOptions
+    from ._typed import ColorBy, Drawable, Markers, OwnColormap, PageOptions
     from ._values import Told, Values
 
 if TYPE_CHECKING:
@@ -44,6 +46,8 @@ def html(
     times: ArrayLike | None = None,
     values_title: str | None = None,
     unit: str | None = None,
+    report: str | os.PathLike[str] | None = None,
+    time: float | tuple[float, float, float] | None = None,
     range: tuple[float, float] | None = None,
     palette: str | os.PathLike[str] | Mapping[str, Color] | None = None,
     colormap: OwnColormap | None = None,
@@ -53,6 +57,12 @@ def html(
     radius_factor: float | None = None,
     radius: float | None = None,
     min_radius: float | None = None,
+    synapses: bool | str | Sequence[str] = False,
+    synapse_side: Literal["afferent", "efferent"] | None = None,
+    points: str | os.PathLike[str] | None = None,
+    marker_color_by: str | None = None,
+    marker_size: float | None = None,
+    markers: Markers | None = None,
     soma: Literal["fem", "sphere", "profile", "none"] | None = None,
     ring: Mapping[int, float] | None = None,
     types: Sequence[str | int] | str | None = None,
@@ -78,6 +88,12 @@ def html(
     them, unless `color_by` says otherwise. They are stored in 255 steps of their range. Those over time, with the `times` of
     their frames, are played: all frames, or 200 that are evenly spread.
 
+    Of circuits `report`, a name of `Circuit.reports` or a file: values of a simulation, which are played at all its times, or
+    200 that are evenly spread; or at `time` (ms): one, or ``(from, to, step)``.
+
+    `synapses` of a circuit's cells, with `synapse_side`, or the `points` of a CSV file, with `marker_color_by` and
+    `marker_size`, or all these in the group `markers`, are those of `render`. They are spheres.
+
     `least_width`, `radius_factor`, `radius`, `min_radius`, `soma`, `ring` and `types` are those of `render`; of circuits
     `nodes`, `node_set`, `population`, `region`, `sample` and `sample_seed` select cells, as in `Circuit.select`.
 
@@ -95,6 +111,8 @@ def html(
         "times": times,
         "values_title": values_title,
         "unit": unit,
+        "report": report,
+        "time": time,
         "range": range,
         "palette": palette,
         "colormap": colormap,
@@ -104,6 +122,12 @@ def html(
         "radius_factor": radius_factor,
         "radius": radius,
         "min_radius": min_radius,
+        "synapses": synapses,
+        "synapse_side": synapse_side,
+        "points": points,
+        "marker_color_by": marker_color_by,
+        "marker_size": marker_size,
+        "markers": markers,
         "soma": soma,
         "ring": ring,
         "types": types,
@@ -114,6 +138,9 @@ def html(
         "sample": sample,
         "sample_seed": sample_seed,
     }
+    options = ungrouped(options)
+    if options.get("marker_shape") is not None:
+        raise OptionError("markers of pages are spheres: leave out 'shape' of markers=", "markers", "no 'shape' is needed")
     if path is not None and not force and os.path.exists(path):
         raise FileExistsError(f"{os.fspath(path)} exists: use force=True, or another name")
     made = page_of(what, options, force)
@@ -128,6 +155,8 @@ def html(
 #: Options of pages that say how cells are meshed, and what they begin with.
 MESHED = ("soma", "ring", "types", "radius_factor", "radius", "min_radius")
 LOOK = ("color_by", "palette", "colormap", "range", "background", "least_width")
+#: Options of what a page shows beside cells, which the command line reads.
+CONTENT = ("report", "time", "synapses", "synapse_side", "points", "marker_color_by", "marker_size")
 
 
 def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Page:
@@ -136,11 +165,12 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
         raise RenderError("this build makes no pages: build it with the feature 'render'")
     recipe = _options.recipe({name: options.get(name) for name in MESHED})
     given = {name: options.get(name) for name in LOOK}
-    keywords = {**_keywords(given), "title": options.get("title")}
+    content = _content(what, {name: options.get(name) for name in CONTENT})
+    keywords = {**_keywords(given), "title": options.get("title"), "content": _options.arguments(content)}
     chosen = {name: options.get(name) for name in SELECTION}
     values = options.get("values")
-    if given["color_by"] == "value" and values is None:
-        raise OptionError("color_by='value' needs values=, too", "color_by", "values= is needed, too")
+    if given["color_by"] == "value" and values is None and content["report"] is None:
+        raise OptionError("color_by='value' needs values= or report=, too", "color_by", "values= is needed, too")
     circuit = None
     if isinstance(what, DrawnCircuit):
         if values is not None:
@@ -152,11 +182,30 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
         cells = _cells(what, chosen)
     still, series = _told(cells, is_alone(what), options)
     try:
-        return _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, force)
+        page = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, force)
     except OptionError as error:
         from ._errors import with_given
 
-        raise with_given(error, given) from None
+        raise with_given(error, {**given, **options}) from None
+    for message in page.messages:
+        warnings.warn(NeurotessWarning(message), stacklevel=3)
+    return page
+
+
+def _content(what: Any, options: dict[str, Any]) -> dict[str, Any]:
+    """Reports, synapses and points as the command line has them."""
+    report, time = options["report"], options["time"]
+    if time is not None:
+        if report is None:
+            raise OptionError("time= needs report=, too", "time", "report= is needed, too")
+        if hasattr(time, "__iter__") and len(tuple(time)) != 3:
+            raise OptionError(f"time={time!r}: a time (ms) or (from, to, step) is needed", "time", "a time is needed")
+    if report is not None and isinstance(what, DrawnCircuit):
+        report = what.reports.get(os.fspath(report), os.fspath(report))
+    for file in (report if isinstance(what, DrawnCircuit) else None, options["points"]):
+        if file is not None and not os.path.exists(file):
+            raise missing_file(os.fspath(file))
+    return {**options, "report": report, "time": _options.joined(time, ":")}
 
 
 def _told(cells: list[Any], alone: bool, options: Mapping[str, Any]) -> Told:

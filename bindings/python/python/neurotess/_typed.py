@@ -177,6 +177,8 @@ class PageOptions(TypedDict, total=False):
     times: ArrayLike | None
     values_title: str | None
     unit: str | None
+    report: str | os.PathLike[str] | None
+    time: float | tuple[float, float, float] | None
     range: tuple[float, float] | None
     palette: str | os.PathLike[str] | Mapping[str, Color] | None
     colormap: OwnColormap | None
@@ -186,6 +188,12 @@ class PageOptions(TypedDict, total=False):
     radius_factor: float | None
     radius: float | None
     min_radius: float | None
+    synapses: bool | str | Sequence[str]
+    synapse_side: Literal["afferent", "efferent"] | None
+    points: str | os.PathLike[str] | None
+    marker_color_by: str | None
+    marker_size: float | None
+    markers: Markers | None
     soma: Literal["fem", "sphere", "profile", "none"] | None
     ring: Mapping[int, float] | None
     types: Sequence[str | int] | str | None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ._frame import framed, saved
+from ._groups import ungrouped
 from ._pages import page_of
 from ._pictures import render
 from ._scene import DrawnCircuit, _cells, _chosen, check_names
@@ -33,6 +34,7 @@ PAGE = {
     for name in (
         *("color_by", "values", "times", "unit", "range", "palette", "colormap", "background", "least_width"),
         *("radius_factor", "radius", "min_radius", "soma", "ring", "types"),
+        *("report", "synapses", "synapse_side", "points", "marker_color_by", "marker_size"),
         *("nodes", "node_set", "population", "region", "sample", "sample_seed"),
     )
 } | {"title": "values_title"}
@@ -45,8 +47,9 @@ class View:
     the kernel runs, and it stays in the notebook that is saved or exported. It is what you get where all options are such
     as pages have and the page would have up to 20 MB, of circuits up to 50 cells.
 
-    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, with a `report`. Drag to turn,
-    drag with Shift or the right button to move, use the wheel to come nearer; a double click shows all again.
+    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, and all frames of a `report`.
+    Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer; a double click shows all
+    again.
 
     With ``pip install neurotess[notebook]`` both have ``view.camera``, ``view.orthographic``, ``view.color_by``,
     ``view.time`` with ``view.times``, and ``view.on_pick``, which is called with what is clicked. The browser's has
@@ -77,6 +80,7 @@ class View:
         if renderer not in (None, "browser", "kernel"):
             raise ValueError(f"renderer={renderer!r}: 'browser' or 'kernel' is needed")
         check_names("View", render, options)
+        options = ungrouped(options)
         shown = _read(what)
         known = {*PAGE, "time"} if _can_live() else PAGE
         others = [name for name, value in options.items() if name not in known and value not in (None, False)]

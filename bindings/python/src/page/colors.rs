@@ -34,6 +34,8 @@ pub(super) struct Keywords {
     pub(super) range: Option<[f32; 2]>,
     background: Option<String>,
     pub(super) least_width: Option<f32>,
+    /// Options of a report, synapses and points, as the command line has them.
+    pub(super) content: Vec<String>,
 }
 
 /// What a page begins with.

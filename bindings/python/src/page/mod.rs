@@ -13,10 +13,9 @@ use neurotess::morphology::SectionId;
 use neurotess::output::{Existing, write_whole};
 use neurotess::render::Look;
 use neurotess::web::{
-    self, MAX_PAGE_BYTES, PageMarkers, PageOptions, PageRecording, WebError, shared_page,
-    usual_title,
+    self, MAX_PAGE_BYTES, PageOptions, PageRecording, WebError, shared_page, usual_title,
 };
-use neurotess_cli::embed::{self, Picked};
+use neurotess_cli::embed::{self, DrawError, PageContent, Picked};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,7 +23,7 @@ use pyo3::types::PyDict;
 use crate::cell::Cell;
 use crate::circuit::Circuit;
 use crate::errors;
-use crate::picture::{GivenSeries, GivenValues, own_numbers, picked_dict};
+use crate::picture::{GivenSeries, GivenValues, own_numbers, picked_dict, undrawn};
 use crate::surface::Recipe;
 use crate::work::{Stop, stoppable};
 use colors::{Colors, Keywords};
@@ -48,6 +47,8 @@ enum Unmade {
     Page(WebError),
     /// Numbers that cannot be shown.
     Values(String),
+    /// A report, synapses or points that cannot be shown.
+    Content(DrawError),
     /// More than people send.
     Large(usize),
 }
@@ -62,6 +63,9 @@ pub(crate) struct Page {
     /// Times (ms) of the frames that are played.
     #[pyo3(get)]
     times: Vec<f64>,
+    /// What there was to say.
+    #[pyo3(get)]
+    messages: Vec<String>,
     /// The cells at their places.
     placed: Vec<Placed>,
     /// By mesh, of each of its tracing points: section and the file's own number of its sample; none on somata.
@@ -138,15 +142,18 @@ fn page(
 ) -> PyResult<Page> {
     let colors = Colors::of(&keywords).map_err(|e| errors::option(py, &e))?;
     let (own, _) = own_numbers(values, series)?;
-    let shown = match circuit {
+    let mut shown = match circuit {
         Some((circuit, nodes)) => Shown::nodes(py, &circuit, nodes)?,
         None => Shown::alone(&cells),
     };
     let options = recipe.0.generate.clone();
     let made = stoppable(py, None, &Stop::default(), move |stopped| {
+        let content = PageContent::new(keywords.content.iter().cloned());
+        let content = content.map_err(Unmade::Content)?;
+        shown.cut(&content)?;
         let meshes = shown.meshes(&options, stopped)?;
-        let factor = options.radius_factor;
-        let page = Page::of(shown, &meshes, factor, &keywords, colors, own)?;
+        let meshed = (&meshes[..], options.radius_factor);
+        let page = Page::of(shown, meshed, &keywords, colors, own, &content)?;
         match page.made.html.len() {
             bytes if bytes > MAX_PAGE_BYTES && !force => Err(Unmade::Large(bytes)),
             _ => Ok(page),
@@ -158,16 +165,23 @@ fn page(
 impl Page {
     fn of(
         shown: Shown,
-        meshes: &[CoarseMesh],
-        radius_factor: f64,
+        (meshes, radius_factor): (&[CoarseMesh], f64),
         keywords: &Keywords,
         colors: Colors,
         own: Option<OwnNumbers>,
+        content: &PageContent,
     ) -> Result<Self, Unmade> {
         let cells = shown.page_cells(meshes, radius_factor);
         let colored: Vec<_> = cells.iter().map(|page| page.cell).collect();
-        let recording = own.map(|own| played(own, &colored, keywords.range));
-        let recording = recording.transpose()?;
+        let nodes = shown.nodes_of();
+        let of = shown.circuit.as_ref().map(|of| (&**of, &nodes[..]));
+        let recording = match own {
+            Some(own) => Some(played(own, &colored, keywords.range)?),
+            None => {
+                let recording = content.recording(of, &colored, keywords.range);
+                recording.map_err(Unmade::Content)?
+            }
+        };
         let scheme = ColorScheme {
             palette: colors.palette,
             own_colors: colors.own_colors.clone(),
@@ -187,15 +201,16 @@ impl Page {
             least_width: (keywords.least_width)
                 .unwrap_or_else(|| Look::usual_least_width(cells.len())),
         };
-        let none = PageMarkers::default();
+        let markers = content.markers(of, &scheme).map_err(Unmade::Content)?;
         let values = recording.as_ref();
-        let made = shared_page(&cells, &scheme, colors.first, values, &none, &options);
+        let made = shared_page(&cells, &scheme, colors.first, values, &markers, &options);
         Ok(Self {
             made: made.map_err(Unmade::Page)?,
             has_values: recording.is_some(),
             times: recording
                 .map(|recording| recording.times)
                 .unwrap_or_default(),
+            messages: content.messages(),
             placed: shown.placed,
             points: meshes.iter().map(traced).collect(),
         })
@@ -234,6 +249,7 @@ impl Unmade {
         match self {
             Self::Mesh(message) => errors::mesh(py, &message),
             Self::Values(message) => PyValueError::new_err(message),
+            Self::Content(error) => undrawn(py, &error),
             Self::Page(WebError::Shader(fault)) => errors::bug(fault),
             Self::Page(error) => PyValueError::new_err(error.to_string()),
             Self::Large(bytes) => {

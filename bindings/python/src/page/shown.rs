@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use neurotess::circuit::{Instance, NodeRef, soma_center};
-use neurotess::coloring;
+use neurotess::circuit::{self as circuits, Instance, NodeRef, soma_center};
+use neurotess::coloring::{self, with_middles};
 use neurotess::generate::{GenerateOptions, generate_stoppable};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
 use neurotess::render::Placement;
 use neurotess::web::PageCell;
+use neurotess_cli::embed::PageContent;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -24,6 +25,8 @@ use crate::errors;
 pub(super) struct Shown {
     cells: Vec<Arc<Morphology>>,
     pub(super) placed: Vec<Placed>,
+    /// That the cells are of.
+    pub(super) circuit: Option<Arc<circuits::Circuit>>,
 }
 
 /// A cell at its place.
@@ -49,6 +52,7 @@ impl Shown {
         Self {
             placed: placed.collect(),
             cells,
+            circuit: None,
         }
     }
 
@@ -71,6 +75,7 @@ impl Shown {
         let mut shown = Self {
             cells: Vec::new(),
             placed: Vec::with_capacity(instances.len()),
+            circuit: Some(Arc::clone(circuit)),
         };
         let mut of_template = HashMap::new();
         for instance in &instances {
@@ -94,6 +99,29 @@ impl Shown {
             });
         }
         Ok(shown)
+    }
+
+    /// The node of each cell; none of cells of no circuit.
+    pub(super) fn nodes_of(&self) -> Vec<NodeRef> {
+        let placed = self.placed.iter();
+        placed.filter_map(|placed| Some(placed.node?.0)).collect()
+    }
+
+    /// Gives cells a point at the middle of each compartment of a report that they show.
+    ///
+    /// # Errors
+    /// The report is invalid, or of another circuit.
+    pub(super) fn cut(&mut self, content: &PageContent) -> Result<(), Unmade> {
+        let Some(circuit) = &self.circuit else {
+            return Ok(());
+        };
+        let placed = self.placed.iter();
+        let shown: Vec<_> = placed.filter_map(|p| Some((p.cell, p.node?.0))).collect();
+        let cuts = content.cuts(circuit, &shown).map_err(Unmade::Content)?;
+        for (cell, compartments) in cuts {
+            self.cells[cell] = Arc::new(with_middles(&self.cells[cell], &compartments));
+        }
+        Ok(())
     }
 
     pub(super) fn meshes(

@@ -1,26 +1,28 @@
 //! `neurotess html`: cells as one HTML page that opens without a server.
 
 mod args;
+mod in_memory;
+mod markers;
 mod recording;
 mod values;
 
 use std::io::Write;
 
-use neurotess::coloring::{Cell, ColorScheme, MarkerSet, OwnColors};
-use neurotess::render::color::{CATEGORY_BIT, Rgb};
-use neurotess::render::{Look, Marker, MarkerSettings, Placement};
+use neurotess::circuit::NodeRef;
+use neurotess::coloring::{Cell, ColorScheme, OwnColors};
+use neurotess::render::{Look, Placement};
 use neurotess::web::{
-    MAX_PAGE_BYTES, PageCell, PageMarkers, PageOptions, PageRecording, shared_page, usual_title,
+    MAX_PAGE_BYTES, PageCell, PageOptions, PageRecording, shared_page, usual_title,
 };
 use serde::Serialize;
 
 use crate::commands::render::{
-    CircuitInstances, ColorBy as CliColorBy, MeshedCell, RenderArgs, RenderScene, markers,
-    read_scene, stem,
+    CircuitInstances, ColorBy as CliColorBy, MeshedCell, RenderArgs, RenderScene, read_scene, stem,
 };
 use crate::io::output;
 use crate::report::{Entry, Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
+pub use in_memory::PageContent;
 pub use recording::page_recording;
 
 /// What `--json` prints.
@@ -109,13 +111,16 @@ impl Content<'_> {
     fn page(&self, reporter: &Reporter) -> anyhow::Result<neurotess::web::Page> {
         let cells = self.cells();
         let scheme = self.scheme();
-        let recording = self.recording(&cells, reporter)?;
+        let nodes = self.instances.map(CircuitInstances::refs);
+        let nodes = nodes.unwrap_or_default();
+        let recording = self.recording(&cells, &nodes, reporter)?;
         let page_cells: Vec<PageCell<'_>> = cells
             .iter()
             .zip(self.placements)
             .map(|(&cell, &(_, placement))| PageCell { cell, placement })
             .collect();
-        let markers = self.markers(&scheme, reporter)?;
+        let of = self.instances.map(|of| (&of.circuit, &nodes[..]));
+        let markers = markers::read(&self.args.markers, of, &scheme, reporter)?;
         let made = shared_page(
             &page_cells,
             &scheme,
@@ -143,13 +148,16 @@ impl Content<'_> {
     fn recording(
         &self,
         cells: &[Cell<'_>],
+        nodes: &[NodeRef],
         reporter: &Reporter,
     ) -> anyhow::Result<Option<PageRecording>> {
-        match (&self.args.report, &self.args.values, self.instances) {
+        let (args, range) = (self.args, self.args.range);
+        match (&args.report, &args.values, self.instances) {
             (Some(report), _, Some(instances)) => {
-                recording::read(report, self.args, instances, cells, reporter).map(Some)
+                let of = (&instances.circuit, nodes);
+                recording::read((report, args.time), of, cells, range, reporter).map(Some)
             }
-            (_, Some(table), _) => values::read(table, self.args.range, cells).map(Some),
+            (_, Some(table), _) => values::read(table, range, cells).map(Some),
             _ => Ok(None),
         }
     }
@@ -187,35 +195,6 @@ impl Content<'_> {
             scheme: None,
             least_width: least_width.unwrap_or_else(|| Look::usual_least_width(neurons)),
         }
-    }
-
-    fn markers(&self, scheme: &ColorScheme, reporter: &Reporter) -> anyhow::Result<PageMarkers> {
-        let set = markers::read(self.render, self.instances, scheme, reporter)?;
-        let Some(set) = set else {
-            return Ok(PageMarkers::default());
-        };
-        let marker = |marker: &Marker| {
-            let color = (marker.color_key & !CATEGORY_BIT) as usize;
-            (marker.position.to_array(), color)
-        };
-        let size = self.args.markers.marker_size;
-        Ok(PageMarkers {
-            markers: set.markers.iter().map(marker).collect(),
-            radius: size.map_or(MarkerSettings::default().radius, |size| 0.5 * size),
-            legend: marker_legend(&set),
-            colors: set.colors,
-        })
-    }
-}
-
-/// What the legend lists of markers: their categories, or the ends of their scale.
-fn marker_legend(set: &MarkerSet) -> Vec<(Rgb, String)> {
-    let ends = [set.colors.first(), set.colors.last()];
-    match (set.legend.range(), ends) {
-        (Some((range, _)), [Some(&low), Some(&high)]) => [(low, range[0]), (high, range[1])]
-            .map(|(color, end)| (color, format!("{} {end}", set.legend.title())))
-            .into(),
-        _ => set.legend.entries().to_vec(),
     }
 }
 

@@ -2,38 +2,39 @@
 
 use std::path::Path;
 
+use neurotess::circuit::{Circuit, NodeRef};
 use neurotess::coloring::{Cell, DECAY, Recording, RecordingError};
 use neurotess::web::PageRecording;
 
-use super::HtmlArgs;
-use crate::commands::render::{CircuitInstances, times};
+use crate::commands::render::times;
+use crate::options::time::Time;
 use crate::report::Reporter;
 
 /// Most frames of a page without `--time`.
 const USUAL_FRAMES: u64 = 200;
 
-/// Reads a recording of the cells, which are the instances in their order.
+/// Reads a recording of the cells, which are these nodes of a circuit in their order; `range`: as in
+/// [`page_recording`].
 ///
 /// # Errors
 /// Wrong usage; a report that is invalid, or of another circuit.
 pub(super) fn read(
-    report: &Path,
-    args: &HtmlArgs,
-    instances: &CircuitInstances,
+    (report, time): (&Path, Option<Time>),
+    (circuit, nodes): (&Circuit, &[NodeRef]),
     cells: &[Cell<'_>],
+    range: Option<[f32; 2]>,
     reporter: &Reporter,
 ) -> anyhow::Result<PageRecording> {
-    let own: Vec<usize> = (0..cells.len()).collect();
-    let nodes = instances.with_cells(&own);
-    let recording = Recording::open(report, &instances.circuit, cells, &nodes).map_err(whole)?;
+    let nodes: Vec<_> = nodes.iter().copied().map(Some).enumerate().collect();
+    let recording = Recording::open(report, circuit, cells, &nodes).map_err(whole)?;
     if recording.without() > 0 {
         let (without, all, file) = (recording.without(), recording.places(), &recording.file);
         reporter.warning(&format!(
             "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
-    let times = times(args.time, None)?;
-    page_recording(&recording, times, args.range, cells.len()).map_err(whole)
+    let times = times(time, None)?;
+    page_recording(&recording, times, range, cells.len()).map_err(whole)
 }
 
 /// A recording as a page plays it, at these times (ms), or at those of all its frames or of some that are evenly spread.

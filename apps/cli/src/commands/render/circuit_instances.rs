@@ -21,6 +21,14 @@ impl CircuitInstances {
         self.instances.iter().map(node).collect()
     }
 
+    /// The node of each instance, in the circuit.
+    pub(crate) fn refs(&self) -> Vec<NodeRef> {
+        self.instances
+            .iter()
+            .map(|instance| instance.node)
+            .collect()
+    }
+
     /// The cell that each instance shows, as given, and its node.
     pub(crate) fn with_cells(&self, cells: &[usize]) -> Vec<(usize, Option<NodeRef>)> {
         let nodes = self.instances.iter().map(|instance| Some(instance.node));

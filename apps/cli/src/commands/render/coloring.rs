@@ -214,7 +214,9 @@ pub(crate) fn of_pictures(
     };
     colored.neurons = of_cells.len();
     colored.set_widths(args);
-    colored.markers = markers::read(args, instances, &scheme, reporter)?;
+    let nodes = instances.map(CircuitInstances::refs).unwrap_or_default();
+    let drawn = instances.map(|instances| (&instances.circuit, &nodes[..]));
+    colored.markers = markers::read(&args.markers, drawn, &scheme, reporter)?;
     if let Some(markers) = &mut colored.markers {
         colored.coloring.add_markers(markers);
     }

@@ -1,11 +1,11 @@
 //! Synapses and points of a picture.
 
-use neurotess::circuit::PointTable;
+use neurotess::circuit::{Circuit, NodeRef, PointTable};
 use neurotess::coloring::{self, ColorScheme, MarkerSet, SynapseOptions};
 use neurotess::render::{Gpu, MarkerSettings, MarkerShape, Markers, PictureOptions};
 
 use super::args::RenderArgs;
-use super::circuit_instances::CircuitInstances;
+use crate::options::markers::MarkerArgs;
 use crate::report::{Reporter, count, usage};
 
 /// Least diameter (pixels) of a marker.
@@ -13,17 +13,16 @@ const LEAST: f64 = 3.0;
 /// Share of exploration's budget that markers may take beside it.
 const SHARE_OF_BUDGET: f64 = 0.2;
 
-/// Reads what the options ask for.
+/// Reads what the options ask for; `drawn`: the nodes of a circuit that are drawn.
 ///
 /// # Errors
 /// Wrong usage; files that are invalid, or do not have what is asked for.
 pub(crate) fn read(
-    args: &RenderArgs,
-    instances: Option<&CircuitInstances>,
+    asked: &MarkerArgs,
+    drawn: Option<(&Circuit, &[NodeRef])>,
     scheme: &ColorScheme,
     reporter: &Reporter,
 ) -> anyhow::Result<Option<MarkerSet>> {
-    let asked = &args.markers;
     asked.check()?;
     if !asked.any() {
         return Ok(None);
@@ -38,7 +37,7 @@ pub(crate) fn read(
         reporter.note(&count(set.markers.len(), "point"));
         return Ok(Some(set));
     }
-    let Some(instances) = instances else {
+    let Some((circuit, nodes)) = drawn else {
         return usage("--synapses needs a circuit, whose edges say where they are");
     };
     let options = SynapseOptions {
@@ -47,8 +46,7 @@ pub(crate) fn read(
         property: property.map(str::to_owned),
         contacts: asked.shape() == MarkerShape::Contact,
     };
-    let drawn: Vec<_> = instances.instances.iter().map(|i| i.node).collect();
-    let set = coloring::synapses(&instances.circuit, &drawn, &options, scheme);
+    let set = coloring::synapses(circuit, nodes, &options, scheme);
     let set = set.map_err(|e| whole(&e))?;
     let shown = set.markers.len();
     reporter.note(&format!(
