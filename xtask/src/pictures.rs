@@ -1,4 +1,4 @@
-//! `cargo xtask pictures`: the pictures of the README, from the built-in samples.
+//! `cargo xtask pictures`: the pictures of the README and the page of docs/web.md, from the built-in samples.
 
 use std::fs;
 
@@ -49,6 +49,12 @@ const PICTURES: &[(&str, &str)] = &[
     ),
 ];
 
+/// The page that docs/web.md holds, and arguments of `neurotess html`.
+const PAGE: [&str; 2] = [
+    "docs/web/granule.html",
+    "samples/granule.swc --title granule",
+];
+
 /// Runs the command; `golden`: renews the pictures that tests compare with, instead.
 pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
     let mut steps = Steps::default();
@@ -87,6 +93,13 @@ pub(crate) fn run(golden: bool) -> anyhow::Result<()> {
             Ok(out)
         })?;
     }
+    steps.step("page", || {
+        let [out, arguments] = PAGE;
+        steps::run(&mut neurotess(&format!(
+            "html {arguments} -o {out} --force -q"
+        ))?)?;
+        Ok(out.into())
+    })?;
     steps.summary();
     println!("\n{} kB in docs/pictures", bytes / 1000);
     Ok(())
