@@ -51,8 +51,8 @@ const PICTURES: &[(&str, &str)] = &[
 
 /// The page that docs/web.md holds, and arguments of `neurotess html`.
 const PAGE: [&str; 2] = [
-    "docs/web/granule.html",
-    "samples/granule.swc --title granule",
+    "docs/web/pyramidal.html",
+    "samples/pyramidal.swc --title pyramidal",
 ];
 
 /// Runs the command; `golden`: renews the pictures that tests compare with, instead.

@@ -25,6 +25,7 @@ mod meshes;
 mod own_colors;
 #[cfg(feature = "circuit")]
 mod own_numbers;
+#[cfg(feature = "circuit")]
 mod own_series;
 mod own_values;
 mod palette_file;
@@ -56,6 +57,7 @@ pub use meshes::{MeshValues, mesh_color};
 pub use own_colors::{ColorTarget, ColoredThing, OwnColors, kinds, rgb};
 #[cfg(feature = "circuit")]
 pub use own_numbers::OwnNumbers;
+#[cfg(feature = "circuit")]
 pub use own_series::{CellSeries, OwnSeries};
 pub use own_values::{CellValues, OwnValues, by_values};
 pub use palette_file::{PaletteError, PaletteFile};
