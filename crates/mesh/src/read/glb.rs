@@ -407,6 +407,7 @@ impl Scene<'_> {
 const KEPT: [&str; 4] = ["_TYPE", "_POINT", "_SECTION", "_RADIUS"];
 /// Types of accessors by their number of components.
 const SHAPES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
+/// The component type of glTF whose numbers no `f32` holds.
 const UNSIGNED_INT: u32 = 5125;
 
 const TRIANGLES: u64 = 4;
