@@ -42,6 +42,7 @@ fn write_morphology(morphology: &Morphology, to: &mut ByteWriter) {
         points,
         sample_ids,
         sections,
+        file_sections: _,
         header: _,
         spines: _,
     } = morphology;

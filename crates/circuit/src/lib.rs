@@ -34,7 +34,7 @@
 //! file far larger than memory only what is asked for is read. **Spikes** flash and decay.
 //!
 //! ```no_run
-//! use neurotess_circuit::{Report, SectionOrder, Spikes};
+//! use neurotess_circuit::{Report, Spikes};
 //!
 //! let report = Report::open("voltage.h5")?;
 //! let values = &report.populations[0];
@@ -97,7 +97,7 @@ pub use report::{
     is_recording,
 };
 pub use scene::color;
-pub use sections::{Compartment, Location, SectionOrder};
+pub use sections::Compartment;
 pub use select::Selection;
 
 pub use template::{Template, TemplateId, read_all, soma_center};

@@ -1,17 +1,17 @@
 //! Membranes of a circuit's cells, on which synapses lie.
 
 use glam::DVec3;
-use neurotess_morphology::{Membrane, MembranePlace, Morphology};
+use neurotess_morphology::{Membrane, MembranePlace, Morphology, Program, SectionNumbers};
 
 use crate::model::Circuit;
-use crate::sections::{Compartment, SectionOrder};
+use crate::sections::Compartment;
 use crate::template::{TemplateId, soma_center};
 
 /// The membrane of a morphology, with its sections as edges number them.
 #[derive(Debug)]
 pub struct CellMembrane<'c> {
     morphology: &'c Morphology,
-    order: SectionOrder,
+    numbers: SectionNumbers,
     membrane: Membrane<'c>,
 }
 
@@ -23,7 +23,7 @@ impl Circuit {
         let morphology = &read.morphology;
         Some(CellMembrane {
             morphology,
-            order: SectionOrder::of(morphology),
+            numbers: SectionNumbers::of(morphology, Program::Neuron),
             membrane: Membrane::of(morphology),
         })
     }
@@ -32,7 +32,7 @@ impl Circuit {
 impl CellMembrane<'_> {
     /// The place of a share of a section; none if the cell has no such section.
     pub fn place(&self, share: Compartment) -> Option<MembranePlace> {
-        self.order.on_membrane(&self.membrane, share)
+        share.on_membrane(&self.numbers, &self.membrane)
     }
 
     /// The place whose membrane is nearest to another place (µm, the cell's coordinates), within 5 µm.

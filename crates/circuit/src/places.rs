@@ -6,7 +6,7 @@
 //! ```
 //!
 //! `x`, `y` and `z` (µm) are those of a table of points. `section` counts sections as reports do
-//! ([`SectionOrder`](crate::SectionOrder)), 0 is the soma; `position` is from 0 at its start to 1 at its end.
+//! ([`SectionNumbers`](neurotess_morphology::SectionNumbers)), 0 is the soma; `position` is from 0 at its start to 1 at its end.
 
 use std::path::Path;
 

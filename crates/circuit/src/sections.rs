@@ -1,12 +1,9 @@
-//! Sections as reports and edges number them, and where on a neuron a compartment is.
+//! Compartments of reports, and shares of sections that edges name.
 //!
-//! **Theory.** Reports number sections as NEURON does: 0 is the soma, then all sections of the axon,
-//! of the basal dendrites, of the apical ones, and of the rest, each kind in depth-first order (SONATA
-//! developer guide, "Section numbering"). A morphology may have its trees in another order; so the
-//! numbers are counted anew here. A section that is reported in `n` compartments has them at
-//! (k + ½) / n of its length; `element_pos` says it otherwise.
+//! **Theory.** A section that is reported in `n` compartments has them at (k + ½) / n of its length; `element_pos` says it
+//! otherwise. What the number of a section means is [`SectionNumbers`]' to say.
 
-use neurotess_morphology::{Membrane, MembranePlace, Morphology, NeuriteKind, SectionId};
+use neurotess_morphology::{Membrane, MembranePlace, SectionNumbers, SectionPlace};
 
 /// A compartment: a piece of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,59 +14,22 @@ pub struct Compartment {
     pub along: f32,
 }
 
-/// A place on a morphology.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Location {
-    /// The soma.
-    Soma,
-    /// Along a section, from 0 at its start to 1 at its end.
-    Section(SectionId, f32),
-}
-
-/// Sections of a morphology in the order of reports.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SectionOrder(Vec<SectionId>);
-
-impl SectionOrder {
-    /// Axon, basal, apical, the rest; each in depth-first order.
-    pub fn of(morphology: &Morphology) -> Self {
-        let rank = |kind: NeuriteKind| match kind {
-            NeuriteKind::AXON => (0, 0),
-            NeuriteKind::BASAL_DENDRITE => (1, 0),
-            NeuriteKind::APICAL_DENDRITE => (2, 0),
-            NeuriteKind(other) => (3, other),
-        };
-        let mut order: Vec<SectionId> = (0..morphology.sections.len() as u32)
-            .map(SectionId)
-            .collect();
-        order.sort_by_key(|id| rank(morphology.sections[id.index()].kind));
-        Self(order)
+impl Compartment {
+    /// Where it is on a cell; none if the cell has no such section. `numbers`: NEURON's.
+    pub fn place(&self, numbers: &SectionNumbers) -> Option<SectionPlace> {
+        numbers.place(self.section, self.along)
     }
 
-    /// The place of a compartment; `None` if the morphology has no such section.
-    pub fn place(&self, compartment: Compartment) -> Option<Location> {
-        let Some(index) = compartment.section.checked_sub(1) else {
-            return Some(Location::Soma);
-        };
-        let section = self.0.get(usize::try_from(index).ok()?)?;
-        Some(Location::Section(*section, compartment.along))
-    }
-
-    /// The place of a compartment on a cell's membrane; `None` if the cell has no such section.
+    /// Where it is on a cell's membrane; none if the cell has no such section. `numbers`: NEURON's.
     pub fn on_membrane(
         &self,
+        numbers: &SectionNumbers,
         membrane: &Membrane<'_>,
-        compartment: Compartment,
     ) -> Option<MembranePlace> {
-        match self.place(compartment)? {
-            Location::Soma => membrane.in_soma(),
-            Location::Section(section, along) => membrane.on_section(section, along.into()),
+        match self.place(numbers)? {
+            SectionPlace::Soma => membrane.in_soma(),
+            SectionPlace::Section(section, along) => membrane.on_section(section, along.into()),
         }
-    }
-
-    /// The sections in this order: the first has number 1.
-    pub fn sections(&self) -> &[SectionId] {
-        &self.0
     }
 }
 
@@ -93,6 +53,7 @@ pub(crate) fn compartments(sections: &[u64], positions: Option<&[f64]>) -> Vec<C
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use neurotess_morphology::{Program, SectionId};
 
     use super::*;
 
@@ -106,37 +67,28 @@ mod tests {
         assert_eq!(along(&[0, 1], Some(&[0.1, f64::NAN])), [0.1, 0.5]);
     }
 
-    fn read_cell() -> Morphology {
-        let text = b"1 1 0 0 0 5 -1\n2 4 0 6 0 1 1\n3 4 0 9 0 1 2\n4 2 0 -6 0 1 1\n5 3 6 0 0 1 1\n";
-        let read = neurotess_formats::swc::read_bytes(text, "c.swc", &Default::default());
-        read.expect("a cell").morphology
-    }
-
     #[test]
     fn sections_are_numbered_by_kind() {
-        let order = SectionOrder::of(&read_cell());
-        let place = |section| {
-            let along = 0.5;
-            order.place(Compartment { section, along })
-        };
-        assert_eq!(place(0), Some(Location::Soma));
+        let text = b"1 1 0 0 0 5 -1\n2 4 0 6 0 1 1\n3 4 0 9 0 1 2\n4 2 0 -6 0 1 1\n5 3 6 0 0 1 1\n";
+        let read = neurotess_formats::swc::read_bytes(text, "c.swc", &Default::default());
+        let cell = read.expect("a cell").morphology;
+        let numbers = SectionNumbers::of(&cell, Program::Neuron);
+        let at = |section, along| Compartment { section, along };
+        assert_eq!(at(0, 0.5).place(&numbers), Some(SectionPlace::Soma));
         // The axon is the second tree of the file and the first of reports.
-        let ids = [1, 2, 3].map(place);
-        let expected = [1, 2, 0].map(|id| Some(Location::Section(SectionId(id), 0.5)));
+        let ids = [1, 2, 3].map(|section| at(section, 0.5).place(&numbers));
+        let expected = [1, 2, 0].map(|id| Some(SectionPlace::Section(SectionId(id), 0.5)));
         assert_eq!(ids, expected);
-        assert_eq!(place(4), None);
-        let cell = read_cell();
-        let order = SectionOrder::of(&cell);
+        assert_eq!(at(4, 0.5).place(&numbers), None);
         let membrane = Membrane::of(&cell);
-        let at = |section, along| {
-            let place = order.on_membrane(&membrane, Compartment { section, along });
+        let center = |compartment: Compartment| {
+            let place = compartment.on_membrane(&numbers, &membrane);
             place.map(|place| place.center)
         };
-        // The second section of the file has 3 µm along y from 6 to 9.
-        assert_eq!(at(0, 0.3), Some(DVec3::ZERO));
-        assert_eq!(at(3, 0.5), Some(DVec3::new(0.0, 7.5, 0.0)));
-        assert_eq!(at(3, 1.0), Some(DVec3::new(0.0, 9.0, 0.0)));
-        assert_eq!((at(4, 0.5), at(3, f32::NAN)), (None, None));
-        assert_eq!(order.sections()[2], SectionId(0));
+        // The first section of the file has 3 µm along y from 6 to 9.
+        assert_eq!(center(at(0, 0.3)), Some(DVec3::ZERO));
+        assert_eq!(center(at(3, 0.5)), Some(DVec3::new(0.0, 7.5, 0.0)));
+        assert_eq!(center(at(3, 1.0)), Some(DVec3::new(0.0, 9.0, 0.0)));
+        assert_eq!((center(at(4, 0.5)), center(at(3, f32::NAN))), (None, None));
     }
 }

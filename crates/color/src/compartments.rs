@@ -1,8 +1,10 @@
 //! Which compartment of a report each tracing point of a cell shows.
 
-use neurotess_circuit::{Compartment, Location, SectionOrder};
+use std::collections::HashMap;
+
+use neurotess_circuit::Compartment;
 use neurotess_mesh::Role;
-use neurotess_morphology::shape;
+use neurotess_morphology::{Program, SectionId, SectionNumbers, SectionPlace, shape};
 use neurotess_render::color::category;
 
 use crate::path_distance::path_distances;
@@ -26,17 +28,18 @@ pub(super) fn matched(cut: &[Compartment], own: &[Compartment]) -> Vec<usize> {
     cut.iter().map(nearest).collect()
 }
 
-/// The nearest compartment of every tracing point, in the point's own section.
+/// The nearest compartment of every tracing point, in the section of the file that the point is from.
 pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32> {
     let morphology = cell.morphology;
-    let order = SectionOrder::of(morphology);
+    let numbers = SectionNumbers::of(morphology, Program::Neuron);
     let mut soma = None;
-    let mut of_section: Vec<Vec<(f32, u32)>> = vec![Vec::new(); morphology.sections.len()];
+    let mut of_section: HashMap<u64, Vec<(f32, u32)>> = HashMap::new();
     for (compartment, number) in compartments.iter().zip(0..) {
-        match order.place(*compartment) {
-            Some(Location::Soma) => soma = soma.or(Some(number)),
-            Some(Location::Section(section, along)) => {
-                of_section[section.index()].push((along, number));
+        match compartment.place(&numbers) {
+            Some(SectionPlace::Soma) => soma = soma.or(Some(number)),
+            Some(SectionPlace::Section(..)) => {
+                let all = of_section.entry(compartment.section).or_default();
+                all.push((compartment.along, number));
             }
             None => {}
         }
@@ -45,11 +48,11 @@ pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32>
         shape::path_lengths(morphology),
         shape::section_lengths(morphology),
     );
-    let nearest = |section: usize, distance: f32| {
-        let length = lengths[section].max(1e-9);
-        let along = ((f64::from(distance) - (ends[section] - length)) / length) as f32;
+    let nearest = |section: SectionId, distance: f32| {
+        let begins = ends[section.index()] - lengths[section.index()];
+        let (number, along) = numbers.at(section, f64::from(distance) - begins);
         let far = |compartment: &&(f32, u32)| (compartment.0 - along).abs();
-        let all = of_section[section].iter();
+        let all = of_section.get(&number)?.iter();
         all.min_by(|a, b| far(a).total_cmp(&far(b)))
             .map(|&(_, number)| number)
     };
@@ -57,10 +60,10 @@ pub(super) fn on_cell(cell: &Cell<'_>, compartments: &[Compartment]) -> Vec<u32>
     points
         .map(|(point, distance)| {
             let section = point.section.index();
-            let section = section.filter(|&section| section < of_section.len());
+            let section = section.filter(|&section| section < lengths.len());
             let compartment = match (point.role, section, distance) {
                 (Role::Soma, ..) => soma,
-                (_, Some(section), Some(distance)) => nearest(section, distance),
+                (_, Some(section), Some(distance)) => nearest(SectionId(section as u32), distance),
                 _ => None,
             };
             compartment.unwrap_or(category(0))

@@ -14,10 +14,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use neurotess_circuit::{
-    Circuit, CircuitError, Compartment, Location, NodeRef, RecordingFile, SectionOrder,
+use neurotess_circuit::{Circuit, CircuitError, Compartment, NodeRef, RecordingFile};
+use neurotess_morphology::{
+    FileSections, Morphology, Point, Program, SectionId, SectionNumbers, SectionPlace, shape,
 };
-use neurotess_morphology::{Morphology, Point, SectionId, shape};
 
 /// No point is inserted if a traced one is this near to the compartment's middle (share of the
 /// compartment's length).
@@ -54,16 +54,18 @@ pub fn cuts(
 
 /// The morphology with a point at the middle of each compartment.
 pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Morphology {
-    let order = SectionOrder::of(morphology);
+    let numbers = SectionNumbers::of(morphology, Program::Neuron);
     let mut middles: Vec<Vec<f64>> = vec![Vec::new(); morphology.sections.len()];
     for compartment in compartments {
-        if let Some(Location::Section(section, along)) = order.place(*compartment) {
+        if let Some(SectionPlace::Section(section, along)) = compartment.place(&numbers) {
             middles[section.index()].push(f64::from(along));
         }
     }
     let somata = morphology.somata.iter().flat_map(|soma| &soma.samples);
     let known = morphology.sample_ids.iter().copied();
     let last = known.chain(somata.map(|sample| sample.id)).max();
+    let known = morphology.known_file_sections();
+    let mut of_points = Vec::with_capacity(morphology.points.len() + compartments.len());
     let mut cut = Morphology {
         points: Vec::with_capacity(morphology.points.len() + compartments.len()),
         sample_ids: Vec::with_capacity(morphology.points.len() + compartments.len()),
@@ -76,24 +78,30 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
         let first = cut.points.len() as u32;
         let mut before = shape::branch_point(morphology, SectionId(index as u32)).copied();
         let mut ahead = MiddlesAhead::new(morphology, index, middles);
-        for (point, sample) in morphology.points[section.range()]
-            .iter()
-            .zip(&morphology.sample_ids[section.range()])
-        {
+        for point_index in section.range() {
+            let point = &morphology.points[point_index];
+            let sample = &morphology.sample_ids[point_index];
+            let file_section = known.of_points[point_index];
             if let Some(before) = before {
                 for share in ahead.within(&before, point) {
                     cut.points.push(between(&before, point, share));
                     cut.sample_ids.push(next);
+                    of_points.push(file_section);
                     next += 1;
                 }
             }
             cut.points.push(*point);
             cut.sample_ids.push(*sample);
+            of_points.push(file_section);
             before = Some(*point);
         }
         cut.sections[index].first = first;
         cut.sections[index].end = cut.points.len() as u32;
     }
+    cut.file_sections = FileSections {
+        of_points,
+        ..known.into_owned()
+    };
     cut
 }
 

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use neurotess_circuit::{Compartment, Location, ReportPopulation, SectionOrder, TimeAxis};
-use neurotess_morphology::{Morphology, SectionId};
+use neurotess_circuit::{Compartment, ReportPopulation, TimeAxis};
+use neurotess_morphology::{Morphology, Program, SectionId, SectionNumbers, SectionPlace};
 
 use crate::recording::{Recording, RecordingError, Source};
 
@@ -47,16 +47,20 @@ impl Recording {
             let row = part.rows[found];
             let own = population.compartments(row)?;
             let first = population.compartment_range(row).start;
-            let order = SectionOrder::of(morphology);
-            let nearest = nearest(&own, &order, section, along);
+            let numbers = SectionNumbers::of(morphology, Program::Neuron);
+            let nearest = nearest(&own, &numbers, section, along);
             return Ok(nearest.map(|(index, section)| {
                 let of_section = own.iter().filter(|c| c.section == own[index].section);
                 let before = own[..index].iter();
+                let ours = |compartment: &Compartment| match compartment.place(&numbers) {
+                    Some(SectionPlace::Section(_, along)) => along,
+                    _ => compartment.along,
+                };
                 TracedCompartment {
                     section,
-                    along: own[index].along,
+                    along: ours(&own[index]),
                     number: before.filter(|c| c.section == own[index].section).count(),
-                    all: of_section.map(|c| c.along).collect(),
+                    all: of_section.map(ours).collect(),
                     population: place,
                     column: first + index as u64,
                 }
@@ -138,21 +142,23 @@ impl Recording {
 /// The index of the nearest compartment of a section, and its section.
 fn nearest(
     own: &[Compartment],
-    order: &SectionOrder,
+    numbers: &SectionNumbers,
     section: Option<SectionId>,
     along: f32,
 ) -> Option<(usize, Option<SectionId>)> {
-    let place = |compartment: &Compartment| match order.place(*compartment)? {
-        Location::Soma => Some(None),
-        Location::Section(section, _) => Some(Some(section)),
+    let place = |compartment: &Compartment| match compartment.place(numbers)? {
+        SectionPlace::Soma => Some((None, compartment.along)),
+        SectionPlace::Section(section, along) => Some((Some(section), along)),
     };
     if let [only] = own {
-        return Some((0, place(only)?));
+        return Some((0, place(only)?.0));
     }
     let all = own.iter().enumerate();
-    let there = all.filter(|(_, compartment)| place(compartment) == Some(section));
-    let far = |compartment: &Compartment| (compartment.along - along).abs();
-    let nearest = there.min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+    let there = all.filter_map(|(index, compartment)| {
+        let (of, there) = place(compartment)?;
+        (of == section).then_some((index, (there - along).abs()))
+    });
+    let nearest = there.min_by(|a, b| a.1.total_cmp(&b.1));
     nearest.map(|(index, _)| (index, section))
 }
 
@@ -165,13 +171,14 @@ mod tests {
         let text =
             b"1 1 0 0 0 5 -1\n2 3 0 9 0 1 1\n3 3 0 99 0 1 2\n4 2 0 -9 0 1 1\n5 2 0 -50 0 1 4\n";
         let read = neurotess_formats::swc::read_bytes(text, "cell", &Default::default());
-        let order = SectionOrder::of(&read.expect("a cell").morphology);
+        let cell = read.expect("a cell").morphology;
+        let numbers = SectionNumbers::of(&cell, Program::Neuron);
         let at = |section, along| Compartment { section, along };
         // The axon, second in the file, is the first section of the report.
         let own = [at(0, 0.5), at(1, 0.5), at(2, 0.25), at(2, 0.75)];
         let of = |section: Option<u32>, along| {
             let section = section.map(SectionId);
-            nearest(&own, &order, section, along).map(|(index, _)| index)
+            nearest(&own, &numbers, section, along).map(|(index, _)| index)
         };
         assert_eq!(of(None, 0.0), Some(0));
         assert_eq!(of(Some(1), 0.9), Some(1));
@@ -181,7 +188,7 @@ mod tests {
         );
         assert_eq!(of(Some(7), 0.5), None);
         // A report of somata has one for the whole cell.
-        let soma = nearest(&own[..1], &order, Some(SectionId(0)), 0.5);
+        let soma = nearest(&own[..1], &numbers, Some(SectionId(0)), 0.5);
         assert_eq!(soma, Some((0, None)));
     }
 }

@@ -34,6 +34,7 @@ impl Forest {
             position: sample.position,
             radius: sample.radius,
             parent,
+            section: None,
         });
         self.lines.push(sample.line);
         index

@@ -86,7 +86,7 @@ pub use regular::{read_regular, regular};
 use text::Located;
 pub use warning::Warning;
 use warning::Warnings;
-pub use write::write;
+pub use write::{write, write_numbered};
 
 /// How to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

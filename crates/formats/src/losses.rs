@@ -2,7 +2,7 @@
 
 #[cfg(any(feature = "asc", feature = "h5"))]
 use neurotess_morphology::{Attachment, Soma, SomaKind};
-use neurotess_morphology::{Measures, Morphology};
+use neurotess_morphology::{Measures, Morphology, Program, SectionNumbers};
 
 use crate::Warning;
 
@@ -95,6 +95,30 @@ impl Losses {
                 let message = format!("{what} is {after:.4} µm in the copy instead of {before:.4}");
                 self.add(code, &message, 1);
             }
+        }
+    }
+
+    /// Sections that NEURON and SONATA number otherwise in a copy.
+    pub(crate) fn sections(&mut self, before: &Morphology, after: &Morphology) {
+        if before.points.len() != after.points.len() {
+            // The points are told.
+            return;
+        }
+        let numbers = |of: &Morphology| SectionNumbers::of(of, Program::Neuron).of_points(of);
+        let (before, after) = (numbers(before), numbers(after));
+        let mut pairs: Vec<(u64, u64)> = before.into_iter().zip(after).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let others = pairs.iter().filter(|(before, after)| before != after);
+        let count = others.clone().map(|(before, _)| before);
+        let mut count: Vec<u64> = count.copied().collect();
+        count.dedup();
+        if let Some((before, after)) = others.clone().next() {
+            let message = format!(
+                "sections have other numbers in the copy, by which reports and synapses of the original do not fit it: \
+                 NEURON's section {before} is {after} there"
+            );
+            self.add("sections_renumbered", &message, count.len() as u64);
         }
     }
 

@@ -9,7 +9,7 @@ use neurotess_morphology::NeuriteKind;
 use crate::named::Part as Named;
 use crate::sample::Sample;
 use crate::text::Located;
-use crate::traced::{SPINES_LEFT_OUT, Traced, Tracing};
+use crate::traced::{SPINES_LEFT_OUT, Tracing};
 use crate::warning::Warnings;
 use crate::xml::{Document, Element, Part};
 use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text, xml};
@@ -145,14 +145,8 @@ impl<'w> Tracer<'w> {
             Open::Outline(outline) => outline.push(sample),
             Open::Spine(end) => *end = Some(sample),
             Open::Branch { last, starts } => {
-                let parent = last.replace(self.tracing.points.len() as u32);
                 let starts = std::mem::take(starts);
-                self.tracing.points.push(Traced {
-                    sample,
-                    kind,
-                    parent,
-                    starts,
-                });
+                *last = Some(self.tracing.push(sample, kind, *last, starts));
             }
             Open::Description | Open::Other => {}
         }

@@ -8,7 +8,7 @@
 //! outline. Outlines that are within each other's reach are slices of one soma.
 
 use glam::DVec3;
-use neurotess_morphology::{BuildError, Morphology, NeuriteKind, Node};
+use neurotess_morphology::{BuildError, FileSection, FileSectionId, Morphology, NeuriteKind, Node};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -26,6 +26,8 @@ pub(crate) struct Traced {
     pub(crate) parent: Option<u32>,
     /// Whether it is the first of its section.
     pub(crate) starts: bool,
+    /// Index of its section in [`Tracing::sections`].
+    pub(crate) section: u32,
 }
 
 /// What a file traced.
@@ -34,6 +36,11 @@ pub(crate) struct Tracing {
     /// Outlines of somata, none of them empty.
     pub(crate) outlines: Vec<Vec<Sample>>,
     pub(crate) points: Vec<Traced>,
+    /// Sections in the order of the file, somata left out.
+    pub(crate) sections: Vec<FileSection>,
+    /// Whether a section that is nothing but a copy of its fork has a number: it has one in H5, where it has a row. Readers
+    /// of ASC leave it out (NEURON 9.0.2, MorphIO 3.5.0).
+    pub(crate) empty_sections_count: bool,
     /// Where spines are that are not traced (µm).
     pub(crate) spines: Vec<DVec3>,
     /// Comments to keep.
@@ -47,6 +54,32 @@ pub(crate) const SPINES_LEFT_OUT: (&str, &str) = (
 );
 
 impl Tracing {
+    /// Appends a point and gives its index. One that starts begins a section of the file.
+    pub(crate) fn push(
+        &mut self,
+        sample: Sample,
+        kind: NeuriteKind,
+        parent: Option<u32>,
+        starts: bool,
+    ) -> u32 {
+        if starts {
+            self.sections.push(FileSection {
+                kind,
+                parent: parent.map(|parent| self.points[parent as usize].section),
+                empty: false,
+            });
+        }
+        self.points.push(Traced {
+            sample,
+            kind,
+            parent,
+            starts,
+            section: self.sections.len().saturating_sub(1) as u32,
+        });
+        // More than 32 bits can count are refused before they are used.
+        (self.points.len() - 1) as u32
+    }
+
     /// The morphology, its oddities told to `warnings`.
     pub(crate) fn build(mut self, name: &str, warnings: &mut Warnings) -> Located<Morphology> {
         if self.outlines.is_empty() && self.points.is_empty() {
@@ -69,9 +102,10 @@ impl Tracing {
                 lines.push(sample.line);
             }
         }
-        self.neurites(&mut nodes, &mut lines)?;
-        let built = Morphology::from_outlined_nodes(name, std::mem::take(&mut self.header), &nodes)
-            .map_err(|e| match e {
+        let sections = self.neurites(&mut nodes, &mut lines)?;
+        let header = std::mem::take(&mut self.header);
+        let built = Morphology::from_outlined_nodes(name, header, &nodes, &sections).map_err(
+            |e| match e {
                 BuildError::Cycle { node } => (lines[node as usize], Fault::OwnAncestor),
                 BuildError::OutOfRange { node } => (
                     lines[node as usize],
@@ -83,7 +117,8 @@ impl Tracing {
                 BuildError::UnknownParent { .. } | BuildError::TooMany { .. } => {
                     (1, Fault::TooMany)
                 }
-            })?;
+            },
+        )?;
         warnings.add_notes(built.notes, |node| lines[node as usize]);
         let mut morphology = built.morphology;
         let origin = morphology.origin;
@@ -92,10 +127,11 @@ impl Tracing {
         Ok(morphology)
     }
 
-    /// Appends the neurites' nodes without copies.
-    fn neurites(&self, nodes: &mut Vec<Node>, lines: &mut Vec<u64>) -> Located<()> {
+    /// Appends the neurites' nodes without copies, and gives the sections that have numbers.
+    fn neurites(&self, nodes: &mut Vec<Node>, lines: &mut Vec<u64>) -> Located<Vec<FileSection>> {
         let soma = SomaPoints::new(nodes.iter().map(|n| n.position));
         let copies = self.copies();
+        let (sections, numbers) = self.numbered_sections(&copies);
         let kept_before: Vec<u32> = copies
             .iter()
             .scan(nodes.len() as u32, |next, &copy| {
@@ -128,10 +164,47 @@ impl Tracing {
                 Some(p) => Some(kept_before[p as usize]),
                 None => soma.nearest(point.sample.position),
             };
-            nodes.push(node(&point.sample, point.kind, parent, nodes.len()));
+            let mut node = node(&point.sample, point.kind, parent, nodes.len());
+            node.section = numbers[point.section as usize].and_then(FileSectionId::new);
+            nodes.push(node);
             lines.push(point.sample.line);
         }
-        Ok(())
+        Ok(sections)
+    }
+
+    /// The sections that have numbers, and by section its index among them.
+    fn numbered_sections(&self, copies: &[bool]) -> (Vec<FileSection>, Vec<Option<u32>>) {
+        let mut empty = vec![true; self.sections.len()];
+        for (point, _) in self.points.iter().zip(copies).filter(|(_, copy)| !**copy) {
+            empty[point.section as usize] = false;
+        }
+        let mut count = 0;
+        let number = |&empty: &bool| {
+            let numbered = self.empty_sections_count || !empty;
+            count += u32::from(numbered);
+            numbered.then(|| count - 1)
+        };
+        let numbers: Vec<Option<u32>> = empty.iter().map(number).collect();
+        // A section that hangs on one without a number hangs on what that one hangs on; where sections have none, parents
+        // stand before their children.
+        let mut above: Vec<Option<u32>> = Vec::with_capacity(numbers.len());
+        for (section, &number) in self.sections.iter().zip(&numbers) {
+            let parent = section.parent.map(|parent| parent as usize);
+            let inherited = parent.and_then(|parent| above.get(parent).copied().flatten());
+            above.push(number.or(inherited));
+        }
+        let above = |parent: u32| match numbers[parent as usize] {
+            None => above[parent as usize],
+            number => number,
+        };
+        let all = self.sections.iter().zip(&empty).zip(&numbers);
+        let sections = all.filter(|(_, number)| number.is_some());
+        let sections = sections.map(|((section, &empty), _)| FileSection {
+            parent: section.parent.and_then(above),
+            empty,
+            ..*section
+        });
+        (sections.collect(), numbers)
     }
 
     /// Which points only repeat the one that they branch from.
@@ -159,6 +232,7 @@ fn node(sample: &Sample, kind: NeuriteKind, parent: Option<u32>, before: usize) 
         position: sample.position,
         radius: sample.radius,
         parent,
+        section: None,
     }
 }
 

@@ -125,6 +125,7 @@ mod tests {
             position: DVec3::from_array(position),
             radius,
             parent,
+            section: None,
         };
         let axon = NeuriteKind::AXON;
         let nodes = [

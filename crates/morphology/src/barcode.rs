@@ -74,6 +74,7 @@ mod tests {
             position: DVec3::new(x, y, 0.0),
             radius: 1.0,
             parent,
+            section: None,
         };
         // A fork at 10 with ends at 30 and, by way of a fork at 20, at 25 and 40.
         let nodes = [

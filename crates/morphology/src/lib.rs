@@ -28,6 +28,7 @@
 //!     position: DVec3::new(0.0, y, 0.0),
 //!     radius: 1.0,
 //!     parent,
+//!     section: None,
 //! };
 //! let nodes = [
 //!     node(1, NeuriteKind::SOMA, 0.0, None),
@@ -44,6 +45,7 @@ pub mod barcode;
 mod build;
 mod diff;
 pub mod edit;
+mod file_sections;
 mod frustum;
 mod kind;
 mod measures;
@@ -52,6 +54,7 @@ mod model;
 mod nearest;
 pub mod paths;
 pub mod random;
+mod section_numbers;
 pub mod shape;
 pub mod sholl;
 pub mod smoothing;
@@ -59,8 +62,10 @@ mod soma;
 
 pub use build::{BuildError, BuildNote, Built, Node, Oddity};
 pub use diff::{Difference, Differing, MatchedBy, Retyped, SomaDifference};
+pub use file_sections::{FileSection, FileSectionId, FileSections, Piece};
 pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
 pub use membrane::{Membrane, MembranePlace};
 pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};
+pub use section_numbers::{Program, SectionNumbers, SectionPlace};
 pub use soma::{Hidden, SomaMeshError, SomaShape, soma_area_volume};

@@ -206,6 +206,7 @@ mod tests {
             position: DVec3::new(at[0], at[1], 0.0),
             radius,
             parent,
+            section: None,
         };
         let dendrite = NeuriteKind::BASAL_DENDRITE;
         let nodes = [

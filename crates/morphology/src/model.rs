@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::NeuriteKind;
+use crate::{FileSections, NeuriteKind};
 
 /// A traced cell. Positions are `f32`, in µm relative to [`origin`](Self::origin).
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Morphology {
     /// Sections in depth-first order: a parent stands before its children, and the ranges of
     /// points follow one another without a gap.
     pub sections: Vec<Section>,
+    /// Sections as the file has them, which other programs number.
+    pub file_sections: FileSections,
     /// Comment lines of the file's header, without the comment sign.
     pub header: Vec<String>,
     /// Spines that the file tells of without tracing them (µm, relative to the origin): where each ends, or where it

@@ -244,6 +244,7 @@ mod tests {
             position: DVec3::new(x, y, 0.0),
             radius: 1.0,
             parent,
+            section: None,
         };
         let nodes = [
             row(1, 3, 0.0, 0.0, None),

@@ -91,6 +91,7 @@ mod tests {
             position: DVec3::new(x, 0.0, 0.0),
             radius: 1.0,
             parent,
+            section: None,
         };
         let nodes: Vec<Node> = rows.iter().enumerate().map(node).collect();
         Morphology::from_nodes("axon", Vec::new(), &nodes)

@@ -198,6 +198,7 @@ mod tests {
             position: DVec3::new(x, y, 0.0),
             radius: if id == 1 { 2.0 } else { 0.5 },
             parent,
+            section: None,
         };
         let nodes = [
             row(1, 0.0, 0.0, None),

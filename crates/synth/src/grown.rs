@@ -46,6 +46,7 @@ impl Grown {
             position: (capsule.to * 1e3).round() / 1e3,
             radius: rounded(radius),
             parent: Some(parent),
+            section: None,
         });
         if let Some(room) = &mut self.room {
             room.add(capsule);

@@ -115,7 +115,15 @@ pub fn grow(options: &Options) -> Morphology {
         options.kind
     )];
     let built = Morphology::from_nodes(name, header, &grown.nodes);
-    built
+    let mut grown = built
         .expect("grown nodes have parents before them and finite coordinates")
-        .morphology
+        .morphology;
+    // Sections and samples have the order of files, whatever grew first: NEURON refuses numbers that do not ascend.
+    grown.number_sections_depth_first();
+    let of_somata = grown.somata.iter_mut().flat_map(|soma| &mut soma.samples);
+    let ids = of_somata.map(|sample| &mut sample.id);
+    for (id, number) in ids.chain(&mut grown.sample_ids).zip(1..) {
+        *id = number;
+    }
+    grown
 }

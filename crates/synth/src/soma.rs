@@ -16,6 +16,7 @@ pub(crate) fn samples(spec: &Spec, random: &mut Random) -> Vec<Node> {
         position: DVec3::new(0.0, y, 0.0),
         radius,
         parent,
+        section: None,
     };
     let mut samples = vec![sample(1, 0.0, None)];
     if spec.three_point {

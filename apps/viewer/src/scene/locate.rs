@@ -109,6 +109,7 @@ mod tests {
             position: DVec3::new(x, 0.0, z),
             radius: 1.0,
             parent,
+            section: None,
         };
         let nodes = [
             row(1, 0.0, 0.0, None),

@@ -163,11 +163,9 @@ class Mesh:
 
         ``report.at(time, node)[mesh.compartments(report, node)]`` are the values of the vertices, if all have one.
         """
-        from ._places import nearest_compartments
+        from ._places import compartments_at
 
-        numbers, places = report._on(node)
-        sections = report._sections_of(numbers, self._traced())
-        return nearest_compartments(sections, places, self.section_index + 1, self._lines().along())
+        return compartments_at(self._traced(), report, node, self.section_index + 1, self._lines().along())
 
     def _traced(self) -> Morphology:
         if self.cell is None:

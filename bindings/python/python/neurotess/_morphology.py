@@ -207,7 +207,7 @@ class Morphology:
         """
         from ._places import compartments_of
 
-        return compartments_of(self, *report._on(node), report)
+        return compartments_of(self, report, node)
 
     def measures(self) -> dict[str, Any]:
         """Counts, lengths, areas and volumes, under the names of ``neurotess info --json``.

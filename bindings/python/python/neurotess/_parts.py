@@ -138,9 +138,18 @@ class Section:
 
     @property
     def neuron_section(self) -> int:
-        """Its number in reports of simulations, from 1 on: the axon's come first, then those of basal dendrites, of apical
-        ones and the rest, as in NEURON."""
+        """Its number in NEURON and in reports of simulations, from 1 on: the axon's come first, then those of basal
+        dendrites, of apical ones and the rest, each in the order of the file.
+
+        A file may have an only child as a section of its own, which is a part of this one here: then it is the number of
+        the first.
+        """
         return int(self._of("neuron_section"))
+
+    @property
+    def morphio_section(self) -> int:
+        """Its number in MorphIO, from 0 on: as `neuron_section`, of the first."""
+        return int(self._of("morphio_section"))
 
     @property
     def order(self) -> int:

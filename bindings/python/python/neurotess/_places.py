@@ -159,10 +159,8 @@ def path_distance(cell: Morphology, lines: OnLines, vertices: NDArray[np.float64
     return told
 
 
-def compartments_of(
-    cell: Morphology, numbers: NDArray[np.int64], along: NDArray[np.floating[Any]], report: Report
-) -> NDArray[np.int64]:
-    """For each row of the cell's table the nearest compartment; `numbers`: sections as the report counts them."""
+def compartments_of(cell: Morphology, report: Report, node: int) -> NDArray[np.int64]:
+    """For each row of the cell's table the nearest compartment of a node in a report."""
     import numpy as np
 
     columns = cell._section_columns()
@@ -173,7 +171,24 @@ def compartments_of(
     share = np.clip((distances_from_root(cell) - start[of_points]) / length[of_points], 0.0, 1.0)
     sections = np.append(np.zeros(on_soma, np.int64), of_points + 1)
     places = np.append(np.full(on_soma, 0.5), share)
-    return nearest_compartments(report._sections_of(numbers, cell), along, sections, places)
+    return compartments_at(cell, report, node, sections, places)
+
+
+def compartments_at(
+    cell: Morphology,
+    report: Report,
+    node: int,
+    sections: NDArray[np.integer[Any]],
+    places: NDArray[np.float64],
+) -> NDArray[np.int64]:
+    """For each place along a section, as meshes count these, the nearest compartment of a node in a report: of the section
+    that the file of the tracing has there."""
+    import numpy as np
+
+    numbers, along = report._on(node)
+    report._places_on(cell, numbers, along, stacklevel=5)
+    there = cell._cell.neuron_numbers(sections.astype(np.int64), np.ascontiguousarray(places, np.float64))
+    return nearest_compartments(numbers, along, *there)
 
 
 def nearest_compartments(

@@ -107,7 +107,8 @@ class Report:
 
         Columns: ``section``, as `Mesh.section` counts (0 is the soma, ``cell.sections[i]`` is i + 1), ``along`` it (0 to
         1), and ``neuron_section``, the number in the file: there, as in NEURON, all sections of the axon come first, then
-        those of the basal dendrites, the apical ones and the rest.
+        those of the basal dendrites, the apical ones and the rest, each in the order of the tracing's file. A number that
+        no section of the cell has is a warning, and its ``section`` is −1.
 
         ``section`` needs the node's `cell`: that of the circuit, where the report is one of `Circuit.report`. Without a
         cell there is no such column.
@@ -116,8 +117,10 @@ class Report:
         if cell is None and self._circuit is not None:
             cell = self._circuit.morphology(node, population=self.population)
         pandas = needed("pandas", "circuit")
-        of_cell = {} if cell is None else {"section": self._sections_of(numbers, cell)}
-        return pandas.DataFrame({**of_cell, "along": along, "neuron_section": numbers})
+        if cell is None:
+            return pandas.DataFrame({"along": along, "neuron_section": numbers})
+        section, along = self._places_on(cell, numbers, along, stacklevel=3)
+        return pandas.DataFrame({"section": section, "along": along, "neuron_section": numbers})
 
     def _on(self, node: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Of each compartment of a node the section by its number in the file, and the place along it."""
@@ -128,18 +131,23 @@ class Report:
         sections, along = self._report.compartments(self._index, index)
         return sections.astype("int64"), along
 
-    def _sections_of(self, numbers: NDArray[np.int64], cell: Morphology) -> NDArray[np.int64]:
-        """Sections as meshes count them, of the numbers in the file."""
+    def _places_on(
+        self, cell: Morphology, numbers: NDArray[np.int64], along: NDArray[np.float32], stacklevel: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Sections as meshes count them and the places along them, of numbers in the file; −1 where the cell has none."""
         import numpy as np
 
-        of_sections = cell._section_columns()["neuron_section"]
-        told = np.zeros(len(of_sections) + 1, np.int64)
-        told[of_sections] = np.arange(1, len(of_sections) + 1)
-        if len(numbers) and numbers.max() >= len(told):
-            raise ValueError(
-                f"{self._path} has a section {numbers.max()}, and {cell.name} has {len(of_sections)}: it is not of this cell"
-            )
-        return told[numbers]
+        section, along = cell._cell.neuron_places(np.ascontiguousarray(numbers), np.ascontiguousarray(along))
+        unknown = numbers[section < 0]
+        if len(unknown):
+            import warnings
+
+            from ._errors import NeurotessWarning
+
+            count = f"{len(unknown)} of {len(numbers)} compartments are of sections"
+            told = f"{self._path}: {count} that {cell.name} does not have, as section {unknown[0]}: they have no place"
+            warnings.warn(NeurotessWarning(told), stacklevel=stacklevel)
+        return section, along
 
     def values(
         self,

@@ -10,9 +10,10 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use neurotess::circuit::SectionOrder;
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
-use neurotess::morphology::{Measures, Morphology, shape, soma_area_volume};
+use neurotess::morphology::{
+    Measures, Morphology, Program, SectionId, SectionNumbers, SectionPlace, shape, soma_area_volume,
+};
 use neurotess::output::{Existing, Output};
 use neurotess::synth;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
@@ -238,6 +239,55 @@ impl Cell {
         arrays::rows(py, places.collect())
     }
 
+    /// Of places along sections that NEURON numbers: the sections as meshes count them, 0 for the soma and −1 for none
+    /// that the cell has, and the places along these.
+    fn neuron_places<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: PyReadonlyArray1<'py, i64>,
+        along: PyReadonlyArray1<'py, f32>,
+    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray1<f32>>)> {
+        let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
+        let place = |(&number, &along): (&i64, &f32)| {
+            let number = u64::try_from(number).ok();
+            match number.and_then(|number| of_cell.place(number, along)) {
+                None => (-1, along),
+                Some(SectionPlace::Soma) => (0, along),
+                Some(SectionPlace::Section(section, along)) => (1 + i64::from(section.0), along),
+            }
+        };
+        let pairs = numbers.as_slice()?.iter().zip(along.as_slice()?);
+        let (sections, along) = pairs.map(place).unzip();
+        Ok((arrays::column(py, sections)?, arrays::column(py, along)?))
+    }
+
+    /// The other way round: of places along sections as meshes count them, 0 for the soma, NEURON's numbers and the places
+    /// along what has them; −1 for what is no section of the cell.
+    fn neuron_numbers<'py>(
+        &self,
+        py: Python<'py>,
+        sections: PyReadonlyArray1<'py, i64>,
+        along: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray1<f64>>)> {
+        let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
+        let lengths = shape::section_lengths(&self.morphology);
+        let number = |(&section, &along): (&i64, &f64)| {
+            let index = usize::try_from(section - 1).ok();
+            match index.filter(|&index| index < lengths.len()) {
+                None if section == 0 => (0, along),
+                None => (-1, along),
+                Some(index) => {
+                    let (number, share) =
+                        of_cell.at(SectionId(index as u32), along * lengths[index]);
+                    (number as i64, f64::from(share))
+                }
+            }
+        };
+        let pairs = sections.as_slice()?.iter().zip(along.as_slice()?);
+        let (numbers, along) = pairs.map(number).unzip();
+        Ok((arrays::column(py, numbers)?, arrays::column(py, along)?))
+    }
+
     /// Arrays with a value for each section.
     fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let cell = &*self.morphology;
@@ -253,7 +303,13 @@ impl Cell {
         sections.set_item("parent", of(&parent)?)?;
         let neurites: Vec<i64> = wide(shape::neurites(cell));
         sections.set_item("neurite", arrays::column(py, neurites)?)?;
-        sections.set_item("neuron_section", arrays::column(py, neuron_numbers(cell))?)?;
+        for (name, program) in [
+            ("neuron_section", Program::Neuron),
+            ("morphio_section", Program::Morphio),
+        ] {
+            let numbers = section_numbers(cell, program);
+            sections.set_item(name, arrays::column(py, numbers)?)?;
+        }
         let orders: Vec<i64> = wide(shape::branch_orders(cell));
         sections.set_item("order", arrays::column(py, orders)?)?;
         sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
@@ -381,13 +437,10 @@ impl Cell {
     }
 }
 
-/// The number of each section in reports of simulations, where 0 is the soma.
-fn neuron_numbers(cell: &Morphology) -> Vec<i64> {
-    let mut numbers = vec![0; cell.sections.len()];
-    for (section, number) in SectionOrder::of(cell).sections().iter().zip(1..) {
-        numbers[section.index()] = number;
-    }
-    numbers
+/// The number that a program gives the file's section with which each section begins.
+fn section_numbers(cell: &Morphology, program: Program) -> Vec<i64> {
+    let numbers = SectionNumbers::of(cell, program).of_sections();
+    numbers.into_iter().map(|number| number as i64).collect()
 }
 
 /// What becomes of a file that is there.

@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3};
 use neurotess::morphology::{
-    Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaKind, SomaSample,
+    Attachment, FileSection, FileSections, Morphology, NeuriteKind, Point, Section, SectionId,
+    Soma, SomaKind, SomaSample,
 };
 
 use super::Told;
 
 /// Changes with what follows.
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// What [`from_bytes`] gives back.
 pub(super) fn to_bytes(cell: &Morphology, format: &str, warnings: &[Told]) -> Vec<u8> {
@@ -45,6 +46,16 @@ pub(super) fn to_bytes(cell: &Morphology, format: &str, warnings: &[Told]) -> Ve
         }
         out.integer(i64::from(section.kind.0));
     });
+    let of_file = &cell.file_sections;
+    out.integer(i64::from(of_file.told));
+    out.all(&of_file.of_points, |out, &index| {
+        out.integer(i64::from(index));
+    });
+    out.all(&of_file.sections, |out, section| {
+        out.integer(i64::from(section.kind.0));
+        out.integer(section.parent.map_or(-1, i64::from));
+        out.integer(i64::from(section.empty));
+    });
     out.all(&cell.spines, |out, &spine| out.ball(spine, 0.0));
     out.all(warnings, |out, told| {
         out.text(&told.code);
@@ -73,6 +84,7 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Option<(Morphology, String, Vec<Told>)
         })?,
         sample_ids: from.all(From::integer)?,
         sections: from.all(section)?,
+        file_sections: file_sections(&mut from)?,
         spines: from.all(|from| Some(from.ball()?.0))?,
     };
     let warnings = from.all(|from| {
@@ -130,6 +142,20 @@ fn section(from: &mut From<'_>) -> Option<Section> {
     })
 }
 
+fn file_sections(from: &mut From<'_>) -> Option<FileSections> {
+    Some(FileSections {
+        told: from.integer()? == 1,
+        of_points: from.all(|from| u32::try_from(from.integer()?).ok())?,
+        sections: from.all(|from| {
+            Some(FileSection {
+                kind: NeuriteKind(from.integer()?.try_into().ok()?),
+                parent: u32::try_from(from.integer()?).ok(),
+                empty: from.integer()? == 1,
+            })
+        })?,
+    })
+}
+
 /// Whether all indices are within the arrays, and sections follow one another.
 fn holds(cell: &Morphology) -> bool {
     let mut at = 0;
@@ -151,7 +177,11 @@ fn holds(cell: &Morphology) -> bool {
         let mut parents = soma.samples.iter().filter_map(|sample| sample.parent);
         parents.all(|parent| (parent as usize) < count)
     };
+    let of_file = &cell.file_sections;
+    let in_file = |&index: &u32| (index as usize) < of_file.sections.len();
     sections
+        && of_file.of_points.len() == cell.points.len()
+        && of_file.of_points.iter().all(in_file)
         && at as usize == cell.points.len()
         && cell.sample_ids.len() == cell.points.len()
         && cell.somata.iter().all(samples)

@@ -18,7 +18,7 @@ use super::lexer::{Lexer, Token};
 use crate::Fault;
 use crate::sample::Sample;
 use crate::text::{Located, shown};
-use crate::traced::{SPINES_LEFT_OUT, Traced, Tracing};
+use crate::traced::{SPINES_LEFT_OUT, Tracing};
 use crate::warning::Warnings;
 
 /// Words after which a branch must not go on.
@@ -326,7 +326,7 @@ impl<'a> Parser<'a, '_> {
                     Token::Number(_) => {
                         self.still_open(stage)?;
                         let sample = self.point(f64::NAN)?;
-                        at = Some(self.push(sample, kind, at, starts));
+                        at = Some(self.tracing.push(sample, kind, at, starts));
                         starts = false;
                     }
                     Token::Word(word) if !is_ending(word) => {
@@ -369,24 +369,6 @@ impl<'a> Parser<'a, '_> {
                 _ => self.unknown(),
             }
         }
-    }
-
-    fn push(
-        &mut self,
-        sample: Sample,
-        kind: NeuriteKind,
-        parent: Option<u32>,
-        starts: bool,
-    ) -> u32 {
-        let points = &mut self.tracing.points;
-        points.push(Traced {
-            sample,
-            kind,
-            parent,
-            starts,
-        });
-        // More than 32 bits can count are refused before they are used.
-        (points.len() - 1) as u32
     }
 
     fn still_open(&self, stage: Stage) -> Located<()> {

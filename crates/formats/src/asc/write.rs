@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, Write};
 
-use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Section};
+use neurotess_morphology::{Morphology, NeuriteKind};
 
 use crate::Warning;
 use crate::losses::Losses;
@@ -70,23 +70,28 @@ struct File<'a, W: Write> {
 impl<W: Write> File<'_, W> {
     /// All trees; how many sections are not of the type that they are written with.
     fn trees(&mut self) -> io::Result<u64> {
-        let sections = &self.morphology.sections;
-        let mut children = vec![0_u32; sections.len()];
-        for parent in sections.iter().filter_map(Section::parent) {
-            children[parent.index()] += 1;
+        let morphology = self.morphology;
+        let pieces = morphology.pieces();
+        let mut children = vec![0_u32; morphology.points.len()];
+        for fork in pieces
+            .iter()
+            .filter_map(|piece| piece.branch_point(morphology))
+        {
+            children[fork] += 1;
         }
         // Of each open fork: how many children are still to come.
         let mut open: Vec<u32> = Vec::new();
         let mut kind = NeuriteKind::UNDEFINED;
         let mut retyped = 0;
-        for (section, &forks) in sections.iter().zip(&children) {
-            match section.attachment {
-                Attachment::Section(parent) => {
-                    let fork = sections[parent.index()].end as usize - 1;
-                    let fork = self.morphology.points[fork];
+        for piece in &pieces {
+            let section = &morphology.sections[piece.section.index()];
+            let forks = children[piece.points.end - 1];
+            match piece.branch_point(morphology) {
+                Some(fork) => {
+                    let fork = morphology.points[fork];
                     self.point(open.len(), fork.position, fork.radius)?;
                 }
-                Attachment::Soma { .. } | Attachment::Free => {
+                None => {
                     // No type at all reads back as none; a custom one would be lost in silence.
                     kind = section.kind;
                     let custom = kind != NeuriteKind::UNDEFINED && word(kind).is_none();
@@ -100,7 +105,7 @@ impl<W: Write> File<'_, W> {
                 }
             }
             retyped += u64::from(section.kind != kind);
-            for point in &self.morphology.points[section.range()] {
+            for point in &morphology.points[piece.points.clone()] {
                 self.point(open.len(), point.position, point.radius)?;
             }
             if forks > 0 {

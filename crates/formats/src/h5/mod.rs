@@ -19,7 +19,7 @@ use neurotess_morphology::{Morphology, NeuriteKind};
 use crate::hdf5::{Store, Table};
 use crate::sample::Sample;
 use crate::text::stem;
-use crate::traced::{Traced, Tracing};
+use crate::traced::Tracing;
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, regular};
 pub use write::write;
@@ -246,7 +246,10 @@ impl Tables {
     }
 
     fn tracing(&self, warnings: &mut Warnings) -> Result<Tracing, Fault> {
-        let mut tracing = Tracing::default();
+        let mut tracing = Tracing {
+            empty_sections_count: true,
+            ..Tracing::default()
+        };
         // Of each section the last point, among those traced; none for a soma or an empty one.
         let mut lasts: Vec<Option<u32>> = vec![None; self.sections.len()];
         let mut starts: Vec<(u32, usize)> = Vec::new();
@@ -271,21 +274,21 @@ impl Tables {
             let kind = i32::try_from(kind).ok().filter(|&k| k >= 0);
             let kind = NeuriteKind(kind.ok_or_else(|| self.at(s, "type"))?);
             for point in range {
-                let index = tracing.points.len() as u32;
-                if lasts[s].is_none() {
+                let begins = lasts[s].is_none();
+                let sample = self.sample(point)?;
+                let index = tracing.push(sample, kind, lasts[s], begins);
+                if begins {
                     starts.push((index, s));
                 }
-                tracing.points.push(Traced {
-                    sample: self.sample(point)?,
-                    kind,
-                    parent: lasts[s],
-                    starts: lasts[s].is_none(),
-                });
                 lasts[s] = Some(index);
             }
         }
         for (index, s) in starts {
-            tracing.points[index as usize].parent = self.fork_of(s, &lasts)?;
+            let fork = self.fork_of(s, &lasts)?;
+            tracing.points[index as usize].parent = fork;
+            let section = tracing.points[index as usize].section as usize;
+            let parent = fork.map(|fork| tracing.points[fork as usize].section);
+            tracing.sections[section].parent = parent;
         }
         Ok(tracing)
     }

@@ -35,22 +35,24 @@ pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<
             next = push(position, radius);
         }
     }
-    for section in &morphology.sections {
-        let parent = match section.attachment {
-            Attachment::Section(id) => id.0 as i32 + soma_rows,
-            Attachment::Soma { .. } => 0,
-            Attachment::Free if soma_rows > 0 => 0,
-            Attachment::Free => -1,
+    // Rows in the order of the file, so that they keep their numbers.
+    let pieces = morphology.pieces_in_file_order();
+    let mut row_ending_at = vec![-1; morphology.points.len()];
+    for (piece, row) in pieces.iter().zip(soma_rows..) {
+        let section = &morphology.sections[piece.section.index()];
+        let fork = piece.branch_point(morphology);
+        let parent = match (fork, section.attachment) {
+            (Some(fork), _) => row_ending_at[fork],
+            (None, Attachment::Free) if soma_rows == 0 => -1,
+            (None, _) => 0,
         };
+        row_ending_at[piece.points.end - 1] = row;
         // Type 1 is the soma's alone: readers take points of it for an outline.
         let is_untyped = section.kind == NeuriteKind::SOMA;
         untyped += u64::from(is_untyped);
         structure.extend([next, if is_untyped { 0 } else { section.kind.0 }, parent]);
-        if let Attachment::Section(id) = section.attachment {
-            let fork = morphology.points[morphology.sections[id.index()].end as usize - 1];
-            push(fork.position, fork.radius);
-        }
-        for point in &morphology.points[section.range()] {
+        for point in fork.into_iter().chain(piece.points.clone()) {
+            let point = &morphology.points[point];
             next = push(point.position, point.radius);
         }
     }

@@ -1,6 +1,7 @@
 //! How the segments of a cell hang together.
 
-use std::collections::HashMap;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
 
 use neurotess_morphology::NeuriteKind;
 
@@ -107,7 +108,7 @@ fn parents(segments: &[Segment]) -> Located<Vec<Option<usize>>> {
     segments.iter().map(parent).collect()
 }
 
-/// Segments depth-first, parents before children.
+/// Segments in the order of the file, which numbers sections, but none before its parent.
 fn order(segments: &[Segment], parents: &[Option<usize>]) -> Located<Vec<usize>> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); segments.len()];
     for (i, parent) in parents.iter().enumerate() {
@@ -115,12 +116,12 @@ fn order(segments: &[Segment], parents: &[Option<usize>]) -> Located<Vec<usize>>
             children[*parent].push(i);
         }
     }
-    let roots = (0..segments.len()).rev().filter(|&i| parents[i].is_none());
-    let mut open: Vec<usize> = roots.collect();
+    let roots = (0..segments.len()).filter(|&i| parents[i].is_none());
+    let mut open: BinaryHeap<Reverse<usize>> = roots.map(Reverse).collect();
     let mut order = Vec::with_capacity(segments.len());
-    while let Some(i) = open.pop() {
+    while let Some(Reverse(i)) = open.pop() {
         order.push(i);
-        open.extend(children[i].iter().rev());
+        open.extend(children[i].iter().map(|&child| Reverse(child)));
     }
     if order.len() < segments.len() {
         let mut reached = vec![false; segments.len()];

@@ -11,6 +11,7 @@ mod joints;
 mod kinds;
 mod layout;
 mod members;
+mod order;
 mod records;
 mod scan;
 mod version_1;
@@ -155,6 +156,7 @@ impl Made {
             position: sample.position,
             radius: sample.radius,
             parent,
+            section: None,
         });
         self.lines.push(sample.line);
         index

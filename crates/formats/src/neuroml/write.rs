@@ -1,10 +1,13 @@
 //! Writing NeuroML 2.
 
+use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 
 use glam::Vec3;
-use neurotess_morphology::{Attachment, Morphology, NeuriteKind, SectionId, Soma, SomaKind};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Soma, SomaKind};
 
+use super::order::neurites_begun;
 use crate::Warning;
 use crate::losses::Losses;
 use crate::number::decimal;
@@ -25,6 +28,9 @@ const GROUPS: [(&str, &str, &[NeuriteKind]); 4] = [
     ),
 ];
 
+/// What libNeuroML and exporters know groups by that are unbranched sections.
+const SECTION: &str = "sao864921383";
+
 /// Writes a morphology as a cell of NeuroML 2: a segment for each link between points, in the groups that its
 /// conventions name. A soma of frusta stays so; any other is a sphere. What the format cannot say is returned: numbers
 /// of samples, custom types.
@@ -39,6 +45,7 @@ pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<Vec<Warn
         morphology,
         writer: BufWriter::with_capacity(1 << 16, writer),
         kinds: Vec::new(),
+        sections: Vec::new(),
     };
     file.begin()?;
     let places = file.somata()?;
@@ -98,6 +105,8 @@ struct File<'a, W: Write> {
     writer: BufWriter<W>,
     /// Kind of each segment that has been written.
     kinds: Vec<NeuriteKind>,
+    /// Segments of each section, without those that a neurite's first point is in.
+    sections: Vec<Range<usize>>,
 }
 
 impl<W: Write> File<'_, W> {
@@ -172,26 +181,33 @@ impl<W: Write> File<'_, W> {
         let morphology = self.morphology;
         let end = |i: usize| (morphology.points[i].position, morphology.points[i].radius);
         let mut places: Vec<Option<Place>> = vec![None; morphology.points.len()];
-        // Where the neurite at hand begins on a soma.
-        let mut base: Option<Place> = None;
-        for (s, section) in morphology.sections.iter().enumerate() {
+        let pieces = neurites_begun(morphology);
+        // Of each point that is a fork: the type of what is written first of its children.
+        let mut first_child: HashMap<usize, NeuriteKind> = HashMap::new();
+        for piece in &pieces {
+            if let Some(fork) = piece.branch_point(morphology) {
+                let kind = morphology.sections[piece.section.index()].kind;
+                first_child.entry(fork).or_insert(kind);
+            }
+        }
+        // Of each section: where its neurite begins on a soma.
+        let mut bases: Vec<Option<Place>> = Vec::with_capacity(morphology.sections.len());
+        for section in &morphology.sections {
+            bases.push(match section.attachment {
+                Attachment::Section(parent) => bases[parent.index()],
+                Attachment::Soma { soma, sample } => Some(somata[soma as usize][sample as usize]),
+                Attachment::Free => None,
+            });
+        }
+        for piece in &pieces {
+            let section = &morphology.sections[piece.section.index()];
+            let base = bases[piece.section.index()];
             let named = name(section.kind);
             let kind = named.map_or(NeuriteKind::UNDEFINED, |_| section.kind);
             let named = named.unwrap_or("segment");
-            let mut before = match section.attachment {
-                Attachment::Section(parent) => {
-                    Some(morphology.sections[parent.index()].end as usize - 1)
-                }
-                Attachment::Soma { soma, sample } => {
-                    base = Some(somata[soma as usize][sample as usize]);
-                    None
-                }
-                Attachment::Free => {
-                    base = None;
-                    None
-                }
-            };
-            for point in section.range() {
+            let first_segment = self.kinds.len();
+            let mut before = piece.branch_point(morphology);
+            for point in piece.points.clone() {
                 // The first point of a neurite is the proximal end of what follows it.
                 if let Some(before) = before {
                     let start = places[before].is_none().then(|| end(before));
@@ -199,24 +215,16 @@ impl<W: Write> File<'_, W> {
                     let segment = self.segment(kind, named, parent, start, end(point))?;
                     places[before].get_or_insert((segment, 0.0));
                     places[point] = Some((segment, 1.0));
-                } else if section.range().len() == 1 && !self.goes_on(s) {
+                } else if piece.points.len() == 1 && first_child.get(&point) != Some(&section.kind)
+                {
                     let segment = self.segment(kind, named, base, Some(end(point)), end(point))?;
                     places[point] = Some((segment, 1.0));
                 }
                 before = Some(point);
             }
+            self.sections.push(first_segment..self.kinds.len());
         }
         Ok(())
-    }
-
-    /// Whether a section has a first child of its own kind, which can begin with the section's last point.
-    fn goes_on(&self, section: usize) -> bool {
-        let sections = &self.morphology.sections;
-        let child = sections.get(section + 1);
-        child.is_some_and(|child| {
-            child.parent().map(SectionId::index) == Some(section)
-                && child.kind == sections[section].kind
-        })
     }
 
     /// Writes a segment and gives its number.
@@ -276,6 +284,19 @@ impl<W: Write> File<'_, W> {
                 "      <segmentGroup id=\"{id}\" neuroLexId=\"{term}\">"
             )?;
             for (segment, _) in members {
+                writeln!(self.writer, "        <member segment=\"{segment}\"/>")?;
+            }
+            writeln!(self.writer, "      </segmentGroup>")?;
+        }
+        for (number, segments) in std::mem::take(&mut self.sections).into_iter().enumerate() {
+            if segments.is_empty() {
+                continue;
+            }
+            writeln!(
+                self.writer,
+                "      <segmentGroup id=\"section_{number}\" neuroLexId=\"{SECTION}\">"
+            )?;
+            for segment in segments {
                 writeln!(self.writer, "        <member segment=\"{segment}\"/>")?;
             }
             writeln!(self.writer, "      </segmentGroup>")?;

@@ -33,7 +33,7 @@ use crate::text::{Located, refuse_foreign};
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
 use rows::{Reading, Records};
-pub use write::write;
+pub use write::{SampleNumbers, write, write_numbered};
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///

@@ -196,6 +196,7 @@ fn row(text: &[u8], reading: Reading) -> Result<Row, Fault> {
         position,
         radius,
         parent: None,
+        section: None,
     };
     Ok(Row {
         node,

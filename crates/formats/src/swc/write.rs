@@ -1,22 +1,28 @@
 //! Writing SWC so that reading it back gives an equal morphology.
 //!
-//! Rows are the soma's samples, then the points in depth-first order. Numbers are the shortest
-//! decimals that give the same `f32`, with the origin added and taken off again.
+//! Rows are the somata's samples, then the sections in the order of the file that was read, each without a gap: NEURON
+//! and SONATA number sections by it, and NEURON 9.0.2 reads another cell where other rows stand between those of a section.
+//! Coordinates are the shortest decimals that give the same `f32`, with the origin added and taken off again.
 
 use std::io::{self, BufWriter, Write};
 
-use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Section, Soma};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Piece, Soma};
 
 use crate::Warning;
 use crate::losses::Losses;
 use crate::number::decimal;
 
-/// Writes a morphology as SWC.
-///
-/// Samples keep their numbers; where these repeat, are negative or too few, the rows are numbered
-/// from 1 on. What SWC cannot say is returned: outlines of somata that would be read as something else,
-/// which become a sphere of their radius, and neurites of type 1 on the soma, which get no type. Only other
-/// formats have those.
+/// Which numbers samples get.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SampleNumbers {
+    /// Their own where these ascend from row to row; otherwise from 1 on, since NEURON refuses others or reads another cell.
+    #[default]
+    Ascending,
+    /// Their own; from 1 on only where these repeat, are negative or too few.
+    Kept,
+}
+
+/// Writes a morphology as SWC, its samples with numbers that ascend.
 ///
 /// # Errors
 /// Those of the writer.
@@ -24,10 +30,30 @@ use crate::number::decimal;
 /// # Panics
 /// If indices in the morphology point outside its arrays.
 pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<Vec<Warning>> {
+    write_numbered(morphology, SampleNumbers::default(), writer)
+}
+
+/// Writes a morphology as SWC.
+///
+/// What SWC cannot say is returned: outlines of somata that would be read as something else,
+/// which become a sphere of their radius, and neurites of type 1 on the soma, which get no type; only other
+/// formats have those. Samples whose numbers are not kept are, too.
+///
+/// # Errors
+/// Those of the writer.
+///
+/// # Panics
+/// If indices in the morphology point outside its arrays.
+pub fn write_numbered(
+    morphology: &Morphology,
+    numbers: SampleNumbers,
+    writer: impl Write,
+) -> io::Result<Vec<Warning>> {
+    let pieces = morphology.pieces_in_file_order();
     let mut rows = Rows {
         morphology,
         writer: BufWriter::with_capacity(1 << 16, writer),
-        ids: Ids::of(morphology),
+        ids: Ids::of(morphology, &pieces, numbers),
         text: String::new(),
         is_sphere: morphology.somata.iter().map(is_read_otherwise).collect(),
         untyped: untyped(morphology),
@@ -48,8 +74,8 @@ pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<Vec<Warn
     for soma in 0..morphology.somata.len() {
         rows.soma(soma)?;
     }
-    for (section, &untyped) in morphology.sections.iter().zip(&rows.untyped.clone()) {
-        rows.section(section, untyped)?;
+    for piece in &pieces {
+        rows.piece(piece)?;
     }
     rows.writer.flush()?;
     let mut losses = Losses::default();
@@ -63,6 +89,11 @@ pub fn write(morphology: &Morphology, writer: impl Write) -> io::Result<Vec<Warn
         "types_changed",
         "a section of type 1 on the soma is written without a type",
         count(&rows.untyped),
+    );
+    losses.add(
+        "renumbered",
+        "a sample's number is not kept",
+        rows.ids.renumbered(morphology),
     );
     losses.spines(morphology);
     Ok(losses.into_warnings())
@@ -97,26 +128,43 @@ struct Ids {
 }
 
 impl Ids {
-    fn of(morphology: &Morphology) -> Self {
+    fn of(morphology: &Morphology, pieces: &[Piece], numbers: SampleNumbers) -> Self {
         let own = |s: &Soma| s.samples.iter().map(|s| s.id).collect();
         let somata: Vec<Vec<i64>> = morphology.somata.iter().map(own).collect();
         let mut all: Vec<i64> = somata.iter().flatten().copied().collect();
-        all.extend(&morphology.sample_ids);
-        all.sort_unstable();
-        let unique = all.windows(2).all(|w| w[0] < w[1]) && all.first().is_none_or(|&id| id >= 0);
-        if unique && morphology.sample_ids.len() == morphology.points.len() {
-            return Self {
-                somata,
-                points: morphology.sample_ids.clone(),
-            };
+        if morphology.sample_ids.len() == morphology.points.len() {
+            let of_piece = |piece: &Piece| &morphology.sample_ids[piece.points.clone()];
+            all.extend(pieces.iter().flat_map(of_piece));
+            if numbers == SampleNumbers::Kept {
+                all.sort_unstable();
+            }
+            let ascend = all.windows(2).all(|w| w[0] < w[1]);
+            if ascend && all.first().is_none_or(|&id| id >= 0) {
+                let points = morphology.sample_ids.clone();
+                return Self { somata, points };
+            }
         }
         let mut next = 1..;
         let somata = somata
             .iter()
             .map(|s| next.by_ref().take(s.len()).collect())
             .collect();
-        let points = next.take(morphology.points.len()).collect();
+        let mut points = vec![0; morphology.points.len()];
+        for point in pieces.iter().flat_map(|piece| piece.points.clone()) {
+            points[point] = next.next().unwrap_or(i64::MAX);
+        }
         Self { somata, points }
+    }
+
+    /// How many samples have other numbers than they had.
+    fn renumbered(&self, morphology: &Morphology) -> u64 {
+        let of_somata = morphology.somata.iter().flat_map(|soma| &soma.samples);
+        let of_somata = of_somata
+            .map(|sample| sample.id)
+            .zip(self.somata.iter().flatten());
+        let of_points = morphology.sample_ids.iter().copied().zip(&self.points);
+        let all = of_somata.chain(of_points);
+        all.filter(|(before, now)| before != *now).count() as u64
     }
 }
 
@@ -148,20 +196,24 @@ impl<W: Write> Rows<'_, W> {
         Ok(())
     }
 
-    fn section(&mut self, section: &Section, untyped: bool) -> io::Result<()> {
+    fn piece(&mut self, piece: &Piece) -> io::Result<()> {
         let morphology = self.morphology;
-        let kind = if untyped { 0 } else { section.kind.0 };
-        let mut parent = match section.attachment {
-            Attachment::Free => -1,
-            Attachment::Soma { soma, .. } if self.is_sphere[soma as usize] => {
+        let kind = match self.untyped[piece.section.index()] {
+            true => 0,
+            false => morphology.sections[piece.section.index()].kind.0,
+        };
+        let on_soma = piece.attachment(morphology);
+        let mut parent = match (on_soma, piece.branch_point(morphology)) {
+            (Some(Attachment::Soma { soma, .. }), _) if self.is_sphere[soma as usize] => {
                 self.ids.somata[soma as usize][0]
             }
-            Attachment::Soma { soma, sample } => self.ids.somata[soma as usize][sample as usize],
-            Attachment::Section(id) => {
-                self.ids.points[morphology.sections[id.index()].end as usize - 1]
+            (Some(Attachment::Soma { soma, sample }), _) => {
+                self.ids.somata[soma as usize][sample as usize]
             }
+            (_, Some(point)) => self.ids.points[point],
+            (_, None) => -1,
         };
-        for i in section.range() {
+        for i in piece.points.clone() {
             let point = morphology.points[i];
             let id = self.ids.points[i];
             self.row(id, kind, point.position, point.radius, parent)?;

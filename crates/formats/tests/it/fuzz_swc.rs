@@ -85,7 +85,7 @@ fn read_and_write(text: &[u8], options: &ReadOptions) -> bool {
         return false;
     };
     let mut written = Vec::new();
-    swc::write(&first.morphology, &mut written).expect("memory");
+    swc::write_numbered(&first.morphology, swc::SampleNumbers::Kept, &mut written).expect("memory");
     let again = swc::read_bytes(&written, "fuzz.swc", options);
     let same = again
         .as_ref()

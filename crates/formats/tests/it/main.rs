@@ -27,6 +27,8 @@ mod outlined_round_trip;
 #[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
 mod reference;
 mod round_trip;
+#[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
+mod sections;
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod spines;
 #[cfg(feature = "xml")]

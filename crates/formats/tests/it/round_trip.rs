@@ -14,7 +14,7 @@ fn read(text: &[u8]) -> Morphology {
 
 fn written(morphology: &Morphology) -> Vec<u8> {
     let mut text = Vec::new();
-    swc::write(morphology, &mut text).expect("memory");
+    swc::write_numbered(morphology, swc::SampleNumbers::Kept, &mut text).expect("memory");
     text
 }
 

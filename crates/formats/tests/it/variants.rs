@@ -14,7 +14,7 @@ fn codes(read: &Read) -> Vec<&'static str> {
 
 fn written(morphology: &Morphology) -> String {
     let mut text = Vec::new();
-    swc::write(morphology, &mut text).expect("memory");
+    swc::write_numbered(morphology, swc::SampleNumbers::Kept, &mut text).expect("memory");
     String::from_utf8(text).expect("ASCII")
 }
 

@@ -24,6 +24,7 @@ fn cell(
             position,
             radius,
             parent,
+            section: None,
         });
         nodes.len() as u32 - 1
     };
@@ -43,7 +44,7 @@ fn cell(
         }
     }
     let built = match outlined {
-        true => Morphology::from_outlined_nodes("cell", Vec::new(), &nodes),
+        true => Morphology::from_outlined_nodes("cell", Vec::new(), &nodes, &[]),
         false => Morphology::from_nodes("cell", Vec::new(), &nodes),
     };
     built.expect("a cell").morphology

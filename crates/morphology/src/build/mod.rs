@@ -22,7 +22,11 @@ use thiserror::Error;
 
 pub use notes::{BuildNote, Oddity};
 
-use crate::{Attachment, Morphology, NeuriteKind, Point, Section, SectionId, Soma, SomaSample};
+use crate::file_sections::Collector;
+use crate::{
+    Attachment, FileSection, FileSectionId, Morphology, NeuriteKind, Point, Section, SectionId,
+    Soma, SomaSample,
+};
 use notes::Notes;
 use origin::Frame;
 use somata::Somata;
@@ -41,6 +45,8 @@ pub struct Node {
     pub radius: f64,
     /// Index of the parent among the nodes.
     pub parent: Option<u32>,
+    /// The section of the file that it is from, where the format has sections; none of a soma.
+    pub section: Option<FileSectionId>,
 }
 
 /// What [`Morphology::from_nodes`] gives.
@@ -99,11 +105,12 @@ impl Morphology {
         header: Vec<String>,
         nodes: &[Node],
     ) -> Result<Built, BuildError> {
-        build(name.into(), header, nodes, Traced::Samples)
+        build(name.into(), header, nodes, Traced::Samples, &[])
     }
 
     /// Like [`from_nodes`](Self::from_nodes), for formats that trace somata as outlines: the
-    /// samples of a soma are what [`Soma::from_outlines`] takes, whatever their radii.
+    /// samples of a soma are what [`Soma::from_outlines`] takes, whatever their radii. `sections`: those of the file, in
+    /// its order, which nodes name ([`Node::section`]).
     ///
     /// # Errors
     /// See [`BuildError`].
@@ -111,8 +118,22 @@ impl Morphology {
         name: impl Into<String>,
         header: Vec<String>,
         nodes: &[Node],
+        sections: &[FileSection],
     ) -> Result<Built, BuildError> {
-        build(name.into(), header, nodes, Traced::Outlines)
+        build(name.into(), header, nodes, Traced::Outlines, sections)
+    }
+
+    /// A tracing of nodes that come from another one, with its sections of the file.
+    pub(crate) fn rebuilt(&self, nodes: &[Node], outlined: bool) -> Result<Built, BuildError> {
+        let somata_are = match outlined {
+            true => Traced::Outlines,
+            false => Traced::Samples,
+        };
+        let known = self.known_file_sections();
+        let (name, header) = (self.name.clone(), self.header.clone());
+        let mut built = build(name, header, nodes, somata_are, &known.sections)?;
+        built.morphology.file_sections.told = known.told;
+        Ok(built)
     }
 }
 
@@ -130,6 +151,7 @@ fn build(
     header: Vec<String>,
     nodes: &[Node],
     somata_are: Traced,
+    sections: &[FileSection],
 ) -> Result<Built, BuildError> {
     let mut parents = checked_parents(nodes)?;
     let mut links = Links::of(&parents);
@@ -173,7 +195,9 @@ fn build(
         header,
         ..Morphology::default()
     };
-    walk.neurites(&starts, &frame, &mut morphology);
+    let mut collector = Collector::new(sections, nodes.len());
+    walk.neurites(&starts, &frame, &mut morphology, &mut collector);
+    morphology.file_sections = collector.finish(&morphology.sections);
     let is_of_soma = |i: u32| is_soma(&nodes[i as usize]) && somata.of(i) != NONE;
     notes.radii(nodes, is_of_soma);
     if size::too_large(nodes, is_of_soma) {
@@ -282,7 +306,13 @@ impl Walk<'_> {
     }
 
     /// Depth first; the stack holds the first nodes of sections still to come.
-    fn neurites(&self, starts: &[u32], frame: &Frame, into: &mut Morphology) {
+    fn neurites(
+        &self,
+        starts: &[u32],
+        frame: &Frame,
+        into: &mut Morphology,
+        collector: &mut Collector<'_>,
+    ) {
         into.points.reserve_exact(self.nodes.len());
         into.sample_ids.reserve_exact(self.nodes.len());
         let mut stack = Vec::new();
@@ -290,7 +320,7 @@ impl Walk<'_> {
             stack.push((start, self.attachment(start)));
             while let Some((first, attachment)) = stack.pop() {
                 let id = SectionId(into.sections.len() as u32);
-                let last = self.section(first, attachment, frame, into);
+                let last = self.section(first, attachment, frame, into, collector);
                 let pushed = stack.len();
                 let children = self.links.children(last);
                 stack.extend(children.map(|child| (child, Attachment::Section(id))));
@@ -320,6 +350,7 @@ impl Walk<'_> {
         attachment: Attachment,
         frame: &Frame,
         into: &mut Morphology,
+        collector: &mut Collector<'_>,
     ) -> u32 {
         let traced = self.nodes[first_node as usize].kind;
         let kind = match self.typed {
@@ -330,6 +361,7 @@ impl Walk<'_> {
         let mut at = first_node;
         loop {
             let node = &self.nodes[at as usize];
+            collector.push(node);
             let position = frame.place(node.position);
             into.points.push(Point {
                 position,
@@ -342,6 +374,8 @@ impl Walk<'_> {
             }
         }
         let end = into.points.len() as u32;
+        let id = SectionId(into.sections.len() as u32);
+        collector.end_section(id, first as usize..end as usize, first_node);
         into.sections.push(Section {
             kind,
             attachment,

@@ -47,6 +47,7 @@ mod tests {
             position: DVec3::new(x, 0.0, 0.0),
             radius,
             parent: i.checked_sub(1),
+            section: None,
         };
         let nodes: Vec<Node> = (0_u32..).zip([0.0, length]).map(node).collect();
         let built = Morphology::from_nodes("axon", Vec::new(), &nodes).expect("built");

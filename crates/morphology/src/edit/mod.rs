@@ -24,6 +24,7 @@
 //!         position: DVec3::new(1000.0 * f64::from(i), 0.0, 0.0), // nanometers
 //!         radius: 500.0,
 //!         parent: i.checked_sub(1),
+//!         section: None,
 //!     })
 //!     .collect();
 //! let traced = Morphology::from_nodes("axon", Vec::new(), &nodes)?.morphology;

@@ -5,7 +5,9 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::EditError;
-use crate::{Attachment, BuildError, Morphology, NeuriteKind, Node, Point, SectionId, Soma};
+use crate::{
+    Attachment, BuildError, FileSectionId, Morphology, NeuriteKind, Node, Point, SectionId, Soma,
+};
 
 /// The nodes of a tracing: the samples of its somata, then its points in depth-first order.
 pub(super) struct Nodes {
@@ -60,9 +62,11 @@ impl Nodes {
                 position: morphology.origin + sample.position.as_dvec3(),
                 radius: f64::from(sample.radius),
                 parent: sample.parent.map(|p| first + p),
+                section: None,
             }));
         }
         let somata = nodes.len();
+        let known = morphology.known_file_sections();
         nodes.reserve(morphology.points.len());
         for section in &morphology.sections {
             let mut parent = match section.attachment {
@@ -80,6 +84,7 @@ impl Nodes {
                     position: global(morphology, &morphology.points[point]),
                     radius: f64::from(morphology.points[point].radius),
                     parent: parent.replace(next),
+                    section: FileSectionId::new(known.of_points[point]),
                 });
             }
         }
@@ -100,12 +105,7 @@ impl Nodes {
         morphology: &Morphology,
         edits: &Edits,
     ) -> Result<Morphology, BuildError> {
-        let (name, header) = (morphology.name.clone(), morphology.header.clone());
-        let built = match self.outlined {
-            true => Morphology::from_outlined_nodes(name, header, &edits.nodes),
-            false => Morphology::from_nodes(name, header, &edits.nodes),
-        };
-        let mut rebuilt = built?.morphology;
+        let mut rebuilt = morphology.rebuilt(&edits.nodes, self.outlined)?.morphology;
         let spines = edits.spines.as_ref().unwrap_or(&self.spines).iter();
         let spines = spines.map(|&spine| (spine - rebuilt.origin).as_vec3());
         rebuilt.spines = spines.filter(|spine| spine.is_finite()).collect();

@@ -47,14 +47,21 @@ pub(super) fn resample(
         let begins = usize::from(section.parent().is_some());
         let samples = line.samples(parts);
         largest_move = largest_move.max(line.farthest_from(&samples));
-        for &(position, radius) in &samples[begins.min(samples.len() - 1)..] {
+        let begins = begins.min(samples.len() - 1);
+        for (part, &(position, radius)) in samples.iter().enumerate().skip(begins) {
             let next = edited.len() as u32;
+            // A new sample is from the section of the file that the traced one behind it is from.
+            let behind = line
+                .first_behind(part, parts)
+                .max(usize::from(section.parent().is_some()));
+            let behind = nodes.of_point(section.range().end) + behind - line.points.len();
             edited.push(Node {
                 id: 0,
                 kind: section.kind,
                 position,
                 radius,
                 parent: parent.replace(next),
+                section: nodes.nodes[behind].section,
             });
         }
         lasts.push(edited.len() as u32 - 1);
@@ -123,6 +130,13 @@ impl Line {
         }
         samples.push(traced(last));
         samples
+    }
+
+    /// Index of the first traced point that is not before the end of a part.
+    fn first_behind(&self, part: usize, parts: usize) -> usize {
+        let at = self.length() * part as f64 / parts.max(1) as f64;
+        let before = self.points.partition_point(|point| point.2 < at);
+        before.min(self.points.len() - 1)
     }
 
     /// The greatest distance of a traced point from the piece of the new line that is as far along.

@@ -48,6 +48,7 @@ pub(super) fn within(
             position: from.position.lerp(node.position, share),
             radius: from.radius + share * (node.radius - from.radius),
             parent,
+            section: node.section,
         });
     }
     Ok(Edits {

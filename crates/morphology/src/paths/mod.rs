@@ -18,6 +18,7 @@
 //!     position: DVec3::new(x, y, 0.0),
 //!     radius: 1.0,
 //!     parent,
+//!     section: None,
 //! };
 //! let nodes = [
 //!     node(1, NeuriteKind::SOMA, 0.0, 0.0, None),

@@ -15,6 +15,7 @@ fn cell() -> Morphology {
         position: DVec3::new(x, y, 0.0),
         radius,
         parent,
+        section: None,
     };
     let nodes = [
         row(1, 1, 0.0, 0.0, 3.0, None),

@@ -39,6 +39,7 @@ fn built(rows: &[Row]) -> Morphology {
         position: DVec3::new(x, y, 0.0),
         radius,
         parent: index(parent),
+        section: None,
     };
     let nodes: Vec<Node> = rows.iter().map(node).collect();
     let built = Morphology::from_nodes("cell", Vec::new(), &nodes);

@@ -18,6 +18,7 @@ fn any_tree() -> impl Strategy<Value = Morphology> {
             position: DVec3::from_array(place.map(f64::from)),
             radius: 1.0,
             parent: (i > 0).then(|| (i as u32 - 1).saturating_sub(*back)),
+            section: None,
         };
         let nodes: Vec<Node> = rows.iter().enumerate().map(node).collect();
         let built = Morphology::from_nodes("tree", Vec::new(), &nodes);

@@ -21,6 +21,7 @@ fn built(rows: &[Row]) -> Morphology {
         parent: (back > 0)
             .then(|| (i as u32).saturating_sub(back))
             .filter(|_| i > 0),
+        section: None,
     };
     let nodes: Vec<Node> = rows.iter().enumerate().map(node).collect();
     Morphology::from_nodes("cell", vec!["a header".into()], &nodes)
@@ -411,6 +412,7 @@ fn outlines_stay_outlines() {
         position: DVec3::new(x, y, 0.0),
         radius: 3.0,
         parent: i.checked_sub(1),
+        section: None,
     };
     let nodes = [
         corner(0, -5.0, -5.0),
@@ -418,7 +420,7 @@ fn outlines_stay_outlines() {
         corner(2, 5.0, 5.0),
         corner(3, -5.0, 5.0),
     ];
-    let cell = Morphology::from_outlined_nodes("cell", Vec::new(), &nodes)
+    let cell = Morphology::from_outlined_nodes("cell", Vec::new(), &nodes, &[])
         .expect("built")
         .morphology;
     let after = edited(&cell, &[Edit::Scale(DVec3::splat(2.0))]).0;

@@ -23,6 +23,7 @@ fn cell(radius: f64) -> Morphology {
             position: DVec3::from_array(position),
             radius,
             parent,
+            section: None,
         });
     }
     let built = Morphology::from_nodes("cell", Vec::new(), &nodes);
@@ -121,6 +122,7 @@ fn heads_touch_neither_one_another_nor_neurites() {
         position: DVec3::from_array(position),
         radius: 0.4,
         parent,
+        section: None,
     };
     let nodes: Vec<Node> = (1..).zip(rows).map(node).collect();
     let two = Morphology::from_nodes("two", Vec::new(), &nodes)

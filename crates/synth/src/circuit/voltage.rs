@@ -4,9 +4,9 @@
 //! fall with an undershoot; at a distance d from the soma it comes d / 300 µm/ms later and is lower by
 //! e^(−d / 400 µm). Rest is −65 mV, with swings of 3 mV that differ from cell to cell. Numbers by eye.
 
-use neurotess_circuit::{SectionOrder, SpikePopulation};
-use neurotess_morphology::Morphology;
+use neurotess_circuit::SpikePopulation;
 use neurotess_morphology::shape::{path_lengths, section_lengths};
+use neurotess_morphology::{Morphology, Program, SectionNumbers, SectionPlace};
 
 /// Length of the simulation (ms).
 pub const DURATION: f64 = 100.0;
@@ -74,15 +74,20 @@ fn action_potential(age: f64) -> f64 {
 
 /// Elements in the order of reports: number of the section and distance from the soma (µm).
 fn elements(morphology: &Morphology) -> Vec<(u32, f64)> {
-    let order = SectionOrder::of(morphology);
+    let numbers = SectionNumbers::of(morphology, Program::Neuron);
     let (lengths, ends) = (section_lengths(morphology), path_lengths(morphology));
     let mut elements = vec![(0, 0.0)];
-    for (number, section) in (1..).zip(order.sections()) {
-        let (length, end) = (lengths[section.index()], ends[section.index()]);
-        let count = (length / ELEMENT).ceil().max(1.0);
+    for number in numbers.numbers() {
+        let count = (numbers.length(number).unwrap_or(0.0) / ELEMENT)
+            .ceil()
+            .max(1.0);
         for k in 0..count as u32 {
-            let along = (f64::from(k) + 0.5) / count;
-            elements.push((number, end - length * (1.0 - along)));
+            let share = (f64::from(k) + 0.5) / count;
+            if let Some(SectionPlace::Section(section, along)) = numbers.place(number, share as f32)
+            {
+                let (length, end) = (lengths[section.index()], ends[section.index()]);
+                elements.push((number as u32, end - length * (1.0 - f64::from(along))));
+            }
         }
     }
     elements

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use neurotess::circuit::{Location, PlaceTable, SectionOrder};
-use neurotess::morphology::Morphology;
+use neurotess::circuit::{Compartment, PlaceTable};
 use neurotess::morphology::edit::{Edit, SpinePlaces};
+use neurotess::morphology::{Morphology, Program, SectionNumbers, SectionPlace};
 
 use crate::options::numbers::positive;
 
@@ -92,9 +92,11 @@ impl SpinesOption {
         let (places, left) = match (&self.arg.places, &self.table) {
             (Places::Density(density), _) => (SpinePlaces::Density(*density), 0),
             (Places::Table(_), Some(PlaceTable::Along(shares))) => {
-                let order = SectionOrder::of(morphology);
-                let share = |place| match order.place(place) {
-                    Some(Location::Section(section, along)) => Some((section, f64::from(along))),
+                let numbers = SectionNumbers::of(morphology, Program::Neuron);
+                let share = |place: Compartment| match place.place(&numbers) {
+                    Some(SectionPlace::Section(section, along)) => {
+                        Some((section, f64::from(along)))
+                    }
                     _ => None,
                 };
                 let found: Vec<_> = shares.iter().copied().filter_map(share).collect();

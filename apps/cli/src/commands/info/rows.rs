@@ -83,6 +83,7 @@ pub(super) fn columns(per: Per) -> Vec<&'static str> {
         position: DVec3::ZERO,
         radius: 1.0,
         parent: None,
+        section: None,
     };
     // Any tracing with a section has all columns.
     let one = Morphology::from_nodes("", Vec::new(), &[node]);

@@ -215,6 +215,7 @@ mod tests {
             position: DVec3::new(x, y, 0.0),
             radius: 1.0,
             parent,
+            section: None,
         };
         let nodes = [
             row(1, 0.0, 0.0, None),

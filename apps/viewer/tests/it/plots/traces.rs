@@ -4,9 +4,9 @@ use std::fs;
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::kittest::Queryable;
-use neurotess::circuit::{Report, SectionOrder};
-use neurotess::morphology::Morphology;
+use neurotess::circuit::Report;
 use neurotess::morphology::paths::Location;
+use neurotess::morphology::{Morphology, Program, SectionNumbers};
 use neurotess::plot::Data;
 use neurotess_viewer::Command;
 use neurotess_viewer::command::{Edit, PlotOf};
@@ -59,11 +59,8 @@ fn along_the_longest(morphology: &Morphology) -> (u32, Location) {
 fn expected(folder: &std::path::Path, place: TracePlace, morphology: &Morphology) -> Vec<f32> {
     let report = Report::open(folder.join("voltage.h5")).expect("a report");
     let cells = &report.populations[0];
-    let order = SectionOrder::of(morphology);
-    let number = place.section.map_or(0, |section| {
-        let mut sections = order.sections().iter();
-        1 + sections.position(|id| id.0 == section).expect("there") as u64
-    });
+    let numbers = SectionNumbers::of(morphology, Program::Neuron).of_sections();
+    let number = place.section.map_or(0, |section| numbers[section as usize]);
     let own = cells.compartments(0).expect("compartments");
     let far = |i: &usize| (own[*i].along - place.along).abs();
     let there = (0..own.len()).filter(|&i| own[i].section == number);

@@ -140,7 +140,12 @@ fn every_valid_file_comes_back_equal_after_writing() {
             .expect(file)
             .morphology;
         let mut text = Vec::new();
-        neurotess_formats::swc::write(&first, &mut text).expect("memory");
+        neurotess_formats::swc::write_numbered(
+            &first,
+            neurotess_formats::swc::SampleNumbers::Kept,
+            &mut text,
+        )
+        .expect("memory");
         let again = neurotess_formats::swc::read_bytes(&text, file, &ReadOptions::default());
         assert!(first == again.expect(file).morphology, "{file} changes");
     }

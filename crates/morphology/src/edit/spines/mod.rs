@@ -91,6 +91,7 @@ fn with_spines(nodes: &Nodes, bases: &[Vec<Base>]) -> Vec<Node> {
         let mut parent = node.parent.map(|p| new[p as usize]);
         for base in bases {
             let fork = made.push(node.kind, base.center, base.radius, parent);
+            made.nodes[fork as usize].section = node.section;
             parent = Some(fork);
             let mut above = fork;
             for &(distance, radius) in base.spine.samples() {
@@ -124,6 +125,7 @@ impl Made {
             position,
             radius,
             parent,
+            section: None,
         });
         self.next_id = self.next_id.saturating_add(1);
         self.nodes.len() as u32 - 1
