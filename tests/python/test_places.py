@@ -64,8 +64,12 @@ def test_numbers_that_repeat_are_those_of_the_section() -> None:
     mesh = nt.mesh(first, level=1)
     assert set(mesh.point_index.tolist()) == {-1, 0, 1}
     wide = nt.Morphology.from_table(np.array([(n if n < 3 else 2**40, *rest) for n, *rest in rows], dtype=float))
-    with pytest.raises(ValueError, match="sample numbers above 2147483647"):
-        nt.mesh(wide, level=1).point_index  # noqa: B018
+    with pytest.warns(nt.NeurotessWarning, match="long_sample_numbers"):
+        mesh = nt.mesh(wide, level=1)
+    # Places instead of numbers that 32 bits do not hold.
+    assert set(mesh.sample.tolist()) == {1, 2, 3}
+    assert set(mesh.point_index.tolist()) == {-1, 0, 1}
+    assert set(wide.to_table()["id"][mesh.sample_index].tolist()) == {1, 2, 2**40}
 
 
 def test_path_distances_are_those_of_the_tracing(cell: nt.Morphology, mesh: nt.Mesh) -> None:

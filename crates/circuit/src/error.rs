@@ -337,6 +337,25 @@ pub enum Fault {
         /// Id of the first.
         first: u64,
     },
+    /// A report that is neither a file nor a name of the configuration.
+    #[error("no such report: {there}: give one of these, or a file")]
+    NoReport {
+        /// What there is.
+        there: String,
+    },
+    /// A report of something else than compartments.
+    #[error(
+        "{report} is of type '{type_name}': its values are those of {elements}s, which membranes do not show; choose a \
+         report of compartments, or write a table of it with 'neurotess report'"
+    )]
+    NotOfSections {
+        /// The file.
+        report: String,
+        /// Its type as the configuration has it.
+        type_name: String,
+        /// What has values, in the singular.
+        elements: &'static str,
+    },
     /// A row of a table has too few or too many fields.
     #[error("{found} fields instead of {expected}: correct it")]
     Fields {

@@ -93,8 +93,8 @@ pub use places::PlaceTable;
 pub use points::{PointTable, is_point_table};
 pub use population::{Attribute, NodeRef, Population};
 pub use report::{
-    RecordingFile, Report, ReportKind, ReportPopulation, SpikePopulation, Spikes, TimeAxis,
-    is_recording,
+    DeclaredReport, Elements, RecordingFile, Report, ReportKind, ReportPopulation, SpikePopulation,
+    Spikes, TimeAxis, is_recording,
 };
 pub use scene::color;
 pub use sections::Compartment;

@@ -9,6 +9,7 @@ use crate::error::CircuitError;
 use crate::groups::Groups;
 use crate::node_sets::NodeSets;
 use crate::population::{NodeRef, Population};
+use crate::report::DeclaredReport;
 use crate::template::{Template, TemplateId};
 use crate::warning::Warning;
 
@@ -29,6 +30,8 @@ pub struct Circuit {
     pub edges: Vec<Edges>,
     /// Files of simulation reports by name; those that exist.
     pub reports: BTreeMap<String, std::path::PathBuf>,
+    /// What the configuration says of these.
+    pub declared_reports: Vec<DeclaredReport>,
     /// What was odd.
     pub warnings: Vec<Warning>,
     /// Parts that could not be opened; the rest is there.

@@ -25,7 +25,7 @@ const NEAR: f64 = 0.05;
 
 /// How cells are cut into compartments in a report: for each cell, the compartments of the first
 /// neuron with values that shows it. `instances`: the cell that each neuron shows and its node.
-/// Empty for spikes.
+/// Empty for spikes. `report`: a file, or a name that the circuit gives it.
 ///
 /// # Errors
 /// The file is invalid, or belongs to another circuit.
@@ -35,7 +35,8 @@ pub fn cuts(
     instances: &[(usize, NodeRef)],
 ) -> Result<HashMap<usize, Vec<Compartment>>, CircuitError> {
     let mut cuts = HashMap::new();
-    let RecordingFile::Report(report) = RecordingFile::open(report)? else {
+    let path = circuit.report_of_sections(report)?;
+    let RecordingFile::Report(report) = RecordingFile::open(path)? else {
         return Ok(cuts);
     };
     for population in &report.populations {
@@ -71,7 +72,7 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
         sample_ids: Vec::with_capacity(morphology.points.len() + compartments.len()),
         ..morphology.clone()
     };
-    let mut next = last.unwrap_or(0) + 1;
+    let mut next = last.unwrap_or(0).saturating_add(1);
     for (index, middles) in middles.iter_mut().enumerate() {
         middles.sort_by(f64::total_cmp);
         let section = &morphology.sections[index];
@@ -87,7 +88,7 @@ pub fn with_middles(morphology: &Morphology, compartments: &[Compartment]) -> Mo
                     cut.points.push(between(&before, point, share));
                     cut.sample_ids.push(next);
                     of_points.push(file_section);
-                    next += 1;
+                    next = next.saturating_add(1);
                 }
             }
             cut.points.push(*point);

@@ -63,7 +63,7 @@ pub use own_values::{CellValues, OwnValues, by_values};
 pub use palette_file::{PaletteError, PaletteFile};
 pub use path_distance::path_distances;
 #[cfg(feature = "circuit")]
-pub use recording::{DECAY, Recording, RecordingError};
+pub use recording::{DECAY, Recording, RecordingError, UnknownSections};
 #[cfg(feature = "circuit")]
 pub use report_frame::ReportFrame;
 pub use scheme::{Cell, ColorScheme, Coloring, NOTHING};

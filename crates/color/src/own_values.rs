@@ -61,12 +61,11 @@ pub fn by_values(cells: &[Cell<'_>], values: &OwnValues, scheme: &ColorScheme) -
 /// has none of either. Points have the file's numbers there, which may repeat in other sections.
 pub(crate) fn on_mesh<T: Copy>(cell: &Cell<'_>, points: &[T], soma: T, none: T) -> Vec<T> {
     let morphology = cell.morphology;
+    let labels = morphology.sample_labels();
     let mut of_sample: HashMap<(usize, i32), T> = HashMap::new();
     for (index, section) in morphology.sections.iter().enumerate() {
         for point in section.range() {
-            // Meshes have no larger numbers.
-            let sample = i32::try_from(morphology.sample_ids[point]).unwrap_or(i32::MAX);
-            of_sample.insert((index, sample), points[point]);
+            of_sample.insert((index, labels.of_point(point)), points[point]);
         }
     }
     let of_point = |point: &TracingPoint| match (point.role, point.section.index()) {

@@ -9,6 +9,8 @@
 //! another one of the same cell that was cut otherwise, the nearest compartment of the same section
 //! is taken.
 
+mod unknown;
+
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -24,6 +26,8 @@ use crate::compartments::{matched, on_cell};
 use crate::own_series::{Memory, OwnSeries};
 use crate::report_frame::{NO_BOUNDS, PopulationMatch, ReportFrame, merged, opened};
 use crate::scheme::{Cell, ColorScheme, Coloring};
+use unknown::Unknown;
+pub use unknown::UnknownSections;
 
 /// Default time (ms) after which the flash of a spike has faded to about a third.
 pub const DECAY: f64 = 5.0;
@@ -68,6 +72,7 @@ pub struct Recording {
     pub time: TimeAxis,
     color_keys: Vec<Vec<u32>>,
     pub(crate) has_values: Vec<bool>,
+    unknown: Option<UnknownSections>,
     pub(crate) source: Source,
 }
 
@@ -84,7 +89,7 @@ pub(crate) enum Source {
 }
 
 impl Recording {
-    /// Opens a recording. `instances`: the cell that each neuron shows and its node; none for a
+    /// Opens a recording: a file, or one that the circuit names. `instances`: the cell that each neuron shows and its node; none for a
     /// neuron of no circuit, or of another one.
     ///
     /// # Errors
@@ -95,6 +100,7 @@ impl Recording {
         cells: &[Cell<'_>],
         instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, RecordingError> {
+        let path = &circuit.report_of_sections(path)?;
         let mut recording = match RecordingFile::open(path)? {
             RecordingFile::Report(report) => Self::of_report(report, circuit, cells, instances)?,
             RecordingFile::Spikes(spikes) => Self::of_spikes(spikes, circuit, cells, instances)?,
@@ -117,6 +123,7 @@ impl Recording {
         let mut has_values = vec![false; instances.len()];
         let mut unit = String::new();
         let mut parts = Vec::new();
+        let mut unknown = Unknown::new(cells);
         for population in &report.populations {
             let nodes = population.nodes_in(circuit)?;
             let rows: HashMap<NodeRef, usize> = nodes.into_iter().zip(0..).collect();
@@ -126,6 +133,7 @@ impl Recording {
                     continue;
                 };
                 let own = population.compartments(row)?;
+                unknown.count(*cell, population.nodes[row], &own);
                 if cuts[*cell].is_none() {
                     color_keys[*cell] = on_cell(&cells[*cell], &own);
                 }
@@ -149,6 +157,7 @@ impl Recording {
             time: together(&report.populations),
             color_keys,
             has_values,
+            unknown: unknown.found,
             source: Source::Report(report, parts),
         })
     }
@@ -189,6 +198,7 @@ impl Recording {
             time: steps_through(&spikes),
             color_keys: first_values(cells),
             has_values,
+            unknown: None,
             source: Source::Spikes(spikes, firing),
         })
     }
@@ -212,6 +222,7 @@ impl Recording {
             has_values: (0..instances.len())
                 .map(|instance| memory.has_values(instance))
                 .collect(),
+            unknown: None,
             source: Source::Memory(memory),
         }
     }
@@ -229,6 +240,11 @@ impl Recording {
     /// Number of neurons that have no values.
     pub fn without(&self) -> usize {
         self.has_values.iter().filter(|has| !**has).count()
+    }
+
+    /// Compartments whose section no shown cell has, if there are any.
+    pub fn unknown_sections(&self) -> Option<&UnknownSections> {
+        self.unknown.as_ref()
     }
 
     /// Color keys of cells, the same for all times.

@@ -96,6 +96,8 @@ pub struct ReadOptions {
     /// Take radii in SWC that are no finite numbers as 0, with a warning, instead of refusing the file: for
     /// whoever mends radii afterwards.
     pub zero_for_bad_radii: bool,
+    /// Warn of SWC that NEURON 9 refuses or reads as something else (`neuron_misreads`).
+    pub for_neuron: bool,
 }
 
 /// What a file gave.

@@ -46,3 +46,16 @@ pub enum GenerateError {
     #[error("stopped")]
     Stopped,
 }
+
+impl GenerateError {
+    /// The same of the sample that a label stands for.
+    pub(crate) fn with_own_sample(mut self, own: impl Fn(i64) -> i64) -> Self {
+        match &mut self {
+            Self::TooLarge { sample, .. }
+            | Self::Unresolved { sample, .. }
+            | Self::NotFinite { sample } => *sample = own(*sample),
+            Self::Stopped => {}
+        }
+        self
+    }
+}

@@ -119,7 +119,36 @@ pub fn generate_stoppable(
     clock: impl Fn() -> f64,
     stopped: &AtomicBool,
 ) -> Result<Generated, GenerateError> {
-    let stop = Stop(stopped);
+    let labels = morphology.sample_labels();
+    let mut generated = labeled(morphology, options, clock, Stop(stopped))
+        .map_err(|e| e.with_own_sample(|label| labels.own_number(label)))?;
+    if !labels.are_own() {
+        for warning in &mut generated.warnings {
+            warning.sample = warning.sample.map(|label| labels.own_number(label));
+        }
+        let mut long = Warnings::default();
+        let first = morphology
+            .sample_ids
+            .iter()
+            .find(|id| i32::try_from(**id).is_err());
+        long.add(
+            "long_sample_numbers",
+            first.copied(),
+            "numbers of samples that 32 bits do not hold: the mesh has places instead, from 1 on, the somata's samples first, \
+             then the points in depth-first order, as in the rows of a table of the cell",
+        );
+        generated.warnings.extend(long.into_vec());
+    }
+    Ok(generated)
+}
+
+/// The mesh, with samples called by their [labels](neurotess_morphology::SampleLabels) everywhere.
+fn labeled(
+    morphology: &Morphology,
+    options: &GenerateOptions,
+    clock: impl Fn() -> f64,
+    stop: Stop<'_>,
+) -> Result<Generated, GenerateError> {
     let mut warnings = Warnings::default();
     let as_neurites = soma::as_neurites(morphology, options, &mut warnings);
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref(), &as_neurites);
@@ -213,8 +242,13 @@ fn tell_traced_radii(mesh: &mut CoarseMesh, polygons: Polygons) {
     }
 }
 
-/// The file's own number of each soma's first sample; −1 without one.
+/// The label of each soma's first sample; −1 without one.
 fn first_samples(morphology: &Morphology) -> Vec<i64> {
-    let first = |soma: &Soma| soma.samples.first().map_or(-1, |sample| sample.id);
-    morphology.somata.iter().map(first).collect()
+    let labels = morphology.sample_labels();
+    let somata = morphology.somata.iter().enumerate();
+    let first = |(index, soma): (usize, &Soma)| match soma.samples.is_empty() {
+        true => -1,
+        false => i64::from(labels.of_soma(index, 0)),
+    };
+    somata.map(first).collect()
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 38] = [
+pub(crate) const CODES: [&str; 39] = [
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -19,6 +19,7 @@ pub(crate) const CODES: [&str; 38] = [
     "fork_thickened",
     "insertion_quad_far",
     "inside_soma",
+    "long_sample_numbers",
     "near_fork",
     "neurite_inside_soma",
     "no_insertion_quad",

@@ -15,7 +15,7 @@ const AROUND: usize = 2;
 pub(crate) struct Thinning<'m> {
     traced: &'m Morphology,
     /// Indices of points by their samples.
-    points: BTreeMap<i64, usize>,
+    points: BTreeMap<i32, usize>,
     /// How often points were made thinner.
     steps: BTreeMap<usize, i32>,
 }
@@ -33,11 +33,14 @@ impl<'m> Thinning<'m> {
     /// anything to make thinner.
     pub(crate) fn thin(&mut self, places: &[[i32; 2]]) -> bool {
         if self.points.is_empty() {
-            let samples = self.traced.sample_ids.iter();
-            self.points = samples.copied().zip(0..).collect();
+            let labels = self.traced.sample_labels();
+            let points = 0..self.traced.points.len();
+            self.points = points
+                .map(|point| (labels.of_point(point), point))
+                .collect();
         }
         let samples = places.iter().flatten();
-        let found = samples.filter_map(|&sample| self.points.get(&i64::from(sample)));
+        let found = samples.filter_map(|&sample| self.points.get(&sample));
         let around: BTreeSet<usize> = found.flat_map(|&point| self.around(point)).collect();
         for &point in &around {
             *self.steps.entry(point).or_default() += 1;

@@ -3,6 +3,7 @@
 use std::io::BufWriter;
 use std::path::Path;
 
+use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, ReadOptions};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
@@ -114,17 +115,19 @@ pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes a morphology to a file, whole or not at all. Returns what the format cannot represent.
+/// Writes a morphology to a file, whole or not at all. Returns what the format cannot represent. `numbers`: of the samples
+/// in SWC.
 pub(crate) fn write_morphology(
     morphology: &Morphology,
     format: Format,
+    numbers: SampleNumbers,
     out: &Path,
     force: bool,
 ) -> Result<Vec<formats::Warning>, OutputError> {
     let mut output = output::begin(out, force)?;
     let writer = BufWriter::new(output.file());
-    let lost =
-        formats::write(morphology, format, writer).map_err(|e| OutputError::broken(out, e))?;
+    let lost = formats::write_numbered(morphology, format, numbers, writer)
+        .map_err(|e| OutputError::broken(out, e))?;
     output.finish()?;
     Ok(lost)
 }

@@ -260,7 +260,8 @@ class Circuit(DrawnCircuit):
         """
         if options.get("time") is not None and options.get("report") is None:
             files = self.reports.values()
-            options["report"] = next((file for file in files if not Report(file).is_of_spikes), None)
+            on_cells = (file for file in files if self._circuit.elements(file) == "section")
+            options["report"] = next((file for file in on_cells if not Report(file).is_of_spikes), None)
         return render(self, **options)
 
     if TYPE_CHECKING:

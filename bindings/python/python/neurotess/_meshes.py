@@ -101,7 +101,11 @@ class Mesh:
 
     @property
     def sample(self) -> NDArray[np.int32]:
-        """The file's own number of the nearest sample, for each vertex; `Morphology.samples` has those of points."""
+        """The file's own number of the nearest sample, for each vertex; `Morphology.samples` has those of points.
+
+        Where a number of the file needs more than 32 bits, it is the sample's place instead, from 1 on, as in
+        `Morphology.to_table` (warning ``long_sample_numbers``); `sample_index` is right for all.
+        """
         return self._surface.points
 
     @property

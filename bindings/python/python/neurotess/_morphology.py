@@ -221,13 +221,21 @@ class Morphology:
     # Files and tables
 
     def save(
-        self, path: str | os.PathLike[str], *, format: str | None = None, overwrite: bool = True
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str | None = None,
+        overwrite: bool = True,
+        keep_ids: bool = False,
     ) -> list[str]:
-        """Writes an SWC, ASC or H5 file, whole or not at all.
+        """Writes an SWC, ASC, H5 or NeuroML file, whole or not at all.
+
+        `keep_ids`: samples keep their numbers in SWC where these do not ascend from row to row, though NEURON refuses such
+        files; otherwise they are numbered from 1 on.
 
         Returns what the format cannot hold, such as the header of the file.
         """
-        return self._cell.write(path, format, overwrite)
+        return self._cell.write(path, format, overwrite, keep_ids)
 
     if TYPE_CHECKING:
 

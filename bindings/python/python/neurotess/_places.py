@@ -12,10 +12,6 @@ if TYPE_CHECKING:
     from ._morphology import Morphology
     from ._reports import Report
 
-#: The greatest number of a sample that meshes can have.
-MOST = 2**31 - 1
-
-
 def section_index(section: NDArray[np.int32]) -> NDArray[np.int64]:
     """Indices of sections by their numbers in meshes: −1 on the soma, and where there is none."""
     import numpy as np
@@ -30,10 +26,9 @@ def point_index(cell: Morphology, sample: NDArray[np.int32], section: NDArray[np
     """
     import numpy as np
 
-    _check_numbers(cell)
     columns = cell._section_columns()
     sections = section_index(section)
-    known, code = np.unique(cell.samples, return_inverse=True)
+    known, code = np.unique(cell._cell.sample_labels()[0], return_inverse=True)
     of_point = np.repeat(np.arange(len(columns["first"])), columns["end"] - columns["first"])
     asked = np.searchsorted(known, sample)
     asked[asked == len(known)] = 0
@@ -52,20 +47,12 @@ def sample_index(cell: Morphology, sample: NDArray[np.int32], points: NDArray[np
     """Rows of the cell's table: somata first, then the points."""
     import numpy as np
 
-    of_somata = [soma.samples for soma in cell.somata]
+    of_somata = cell._cell.sample_labels()[1]
     numbers = np.concatenate(of_somata) if of_somata else np.zeros(0, np.int64)
     rows = points + len(numbers)
     on_soma = points < 0
     rows[on_soma] = _find(numbers, sample[on_soma].astype(np.int64))
     return rows
-
-
-def _check_numbers(cell: Morphology) -> None:
-    if len(cell) and cell.samples.max() > MOST:
-        raise ValueError(
-            f"the cell has sample numbers above {MOST}, which meshes cannot hold: make it anew with smaller ones, "
-            "as by Morphology.from_table"
-        )
 
 
 def _find(keys: NDArray[np.int64], wanted: NDArray[np.int64]) -> NDArray[np.int64]:

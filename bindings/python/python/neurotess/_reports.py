@@ -127,6 +127,12 @@ class Report:
         import numpy as np
 
         self._columns(node)
+        elements = "section" if self._circuit is None else self._circuit._circuit.elements(self._path)
+        if elements != "section":
+            raise ValueError(
+                f"{self._path} has values of {elements}s, not of compartments: report.values(node) and report.at(time, node) "
+                "have them, in the order of the file"
+            )
         index = int(np.flatnonzero(self.node_ids == node)[0])
         sections, along = self._report.compartments(self._index, index)
         return sections.astype("int64"), along

@@ -10,6 +10,7 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
 use neurotess::morphology::{
     Measures, Morphology, Program, SectionId, SectionNumbers, SectionPlace, shape, soma_area_volume,
@@ -104,6 +105,7 @@ impl Cell {
         let options = ReadOptions {
             strict,
             zero_for_bad_radii,
+            ..ReadOptions::default()
         };
         // Small files take less time than a thread.
         let read = py.detach(|| formats::read(path, &options));
@@ -228,6 +230,23 @@ impl Cell {
     fn samples(&self, py: Python<'_>) -> PyResult<Py<PyArray1<i64>>> {
         let made = || arrays::column(py, self.morphology.sample_ids.clone());
         Ok(self.samples.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    /// Numbers in meshes of the points, and of the samples of each soma.
+    fn sample_labels<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Py<PyArray1<i64>>, Vec<Py<PyArray1<i64>>>)> {
+        let cell = &self.morphology;
+        let labels = cell.sample_labels();
+        let points = (0..cell.points.len()).map(|point| i64::from(labels.of_point(point)));
+        let of_soma = |soma: usize| {
+            let samples = 0..cell.somata[soma].samples.len();
+            let all = samples.map(|sample| i64::from(labels.of_soma(soma, sample)));
+            arrays::column(py, all.collect())
+        };
+        let somata: PyResult<_> = (0..cell.somata.len()).map(of_soma).collect();
+        Ok((arrays::column(py, points.collect())?, somata?))
     }
 
     /// Places (µm) of spines that are not in the tree.
@@ -385,7 +404,12 @@ impl Cell {
         path: PathBuf,
         format: Option<String>,
         overwrite: bool,
+        keep_ids: bool,
     ) -> PyResult<Vec<String>> {
+        let numbers = match keep_ids {
+            true => SampleNumbers::Kept,
+            false => SampleNumbers::Ascending,
+        };
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         let format = match format {
             Some(name) => format_named(&name)?,
@@ -394,7 +418,7 @@ impl Cell {
         let existing = existing(overwrite);
         let lost = py.detach(|| {
             let mut output = Output::create(&path, existing).map_err(|e| errors::output(&e))?;
-            let lost = formats::write(&self.morphology, format, output.file());
+            let lost = formats::write_numbered(&self.morphology, format, numbers, output.file());
             let lost = lost.map_err(|e| unwritten(format, e))?;
             output.finish().map_err(|e| errors::output(&e))?;
             PyResult::Ok(lost)

@@ -11,7 +11,7 @@ use glam::{DAffine3, DVec3};
 use neurotess::circuit::{
     self as circuits, Attribute, CircuitError, NodeRef, Selection, SynapseSide,
 };
-use neurotess::circuit::{Instance, soma_center};
+use neurotess::circuit::{Elements, Instance, soma_center};
 use neurotess::mesh::Placed;
 use neurotess::recipe::{CellMesh, MeshOptions};
 use numpy::PyArray2;
@@ -78,6 +78,14 @@ impl Circuit {
         reports
             .map(|(name, path)| (name.clone(), path.clone()))
             .collect()
+    }
+
+    /// What the ids of a report's elements are: `section`, `synapse` or `electrode`.
+    fn elements(&self, path: PathBuf) -> &'static str {
+        let declared = self.circuit.declared_report(&path);
+        declared
+            .map_or(Elements::Sections, |report| report.elements)
+            .name()
     }
 
     /// Name, populations of sources and targets, and count of each population of edges.

@@ -17,6 +17,7 @@
 
 mod axis;
 mod chunks;
+mod elements;
 mod spikes;
 
 use std::collections::HashMap;
@@ -24,6 +25,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
+pub use elements::{DeclaredReport, Elements};
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use crate::json::{Document, Json};
 use crate::manifest::Manifest;
-use crate::{CircuitError, Fault};
+use crate::{CircuitError, DeclaredReport, Fault};
 
 /// What configurations say, all paths resolved.
 #[derive(Debug, Default)]
@@ -32,6 +32,8 @@ pub(crate) struct Config {
     /// Report files by name, the simulation's spikes among them, each with the file and the key that
     /// name it; they need not exist.
     pub(crate) reports: BTreeMap<String, (String, String, PathBuf)>,
+    /// What is said of these.
+    pub(crate) declared_reports: Vec<DeclaredReport>,
     /// Simulations that could not be read, which does not keep the circuit from being opened.
     pub(crate) failures: Vec<CircuitError>,
 }
@@ -185,6 +187,8 @@ impl Config {
                 file.push_str(".h5");
             }
             let path = manifest.path_in(folder, &file)?;
+            self.declared_reports
+                .push(DeclaredReport::of(&report, &path));
             let named = (root.file.into(), report.key, path);
             self.reports.insert(name.into(), named);
         }

@@ -92,6 +92,7 @@ pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
         node_sets,
         edges,
         reports: reports.collect(),
+        declared_reports: config.declared_reports,
         warnings,
         failures,
     })

@@ -19,6 +19,7 @@
 
 mod conventions;
 mod ids;
+mod neuron;
 mod number;
 mod rows;
 mod units;
@@ -48,6 +49,7 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
     let reading = Reading {
         extended,
         zero_for_bad_radii: options.zero_for_bad_radii,
+        for_neuron: options.for_neuron,
     };
     read_text(Format::Swc, name, options, |name, warnings| {
         interpret(bytes, name, reading, warnings)
@@ -71,6 +73,9 @@ fn interpret(
         return Err((1, Fault::NoSample));
     }
     ids::resolve(&mut records, warnings)?;
+    if reading.for_neuron {
+        neuron::misreadings(&records, warnings);
+    }
     units::apply(&mut records, warnings);
     conventions::fork_and_end_types(&mut records, warnings);
     let Records {

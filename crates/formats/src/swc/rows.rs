@@ -28,6 +28,8 @@ pub(super) struct Reading {
     pub(super) extended: bool,
     /// Radii that are no finite numbers are 0.
     pub(super) zero_for_bad_radii: bool,
+    /// What NEURON makes of the file is told.
+    pub(super) for_neuron: bool,
 }
 
 /// One row.

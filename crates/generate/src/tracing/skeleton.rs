@@ -21,7 +21,7 @@ pub(crate) struct SkeletonNode {
     pub(crate) parent: u32,
     /// What a root hangs on.
     pub(crate) root: Root,
-    /// The file's own number of the sample.
+    /// The [label](neurotess_morphology::SampleLabels) of the sample.
     pub(crate) sample: i64,
     /// Type of its section.
     pub(crate) kind: SwcType,
@@ -30,7 +30,11 @@ pub(crate) struct SkeletonNode {
 }
 
 /// Adds the samples of a soma, parents first, and says which nodes they are.
-fn push_samples(soma: &Soma, nodes: &mut Vec<SkeletonNode>) -> Vec<u32> {
+fn push_samples(
+    soma: &Soma,
+    label: impl Fn(usize) -> i32,
+    nodes: &mut Vec<SkeletonNode>,
+) -> Vec<u32> {
     let mut node_of = vec![NONE; soma.samples.len()];
     for start in 0..soma.samples.len() {
         // Up to one that is a node, or the first; then down again.
@@ -56,7 +60,7 @@ fn push_samples(soma: &Soma, nodes: &mut Vec<SkeletonNode>) -> Vec<u32> {
                 radius: f64::from(sample.radius),
                 parent,
                 root: Root::Free,
-                sample: sample.id,
+                sample: label(at).into(),
                 kind: SwcType::SOMA,
                 section: SectionNumber::SOMA,
             });
@@ -156,10 +160,11 @@ impl Skeleton {
         let kept = |kind: NeuriteKind| kinds.is_none_or(|kinds| kinds.contains(&kind));
         let mut new_index = vec![NONE; morphology.points.len()];
         let mut nodes = Vec::with_capacity(morphology.points.len());
-        let somata = morphology.somata.iter().zip(as_neurites);
+        let labels = morphology.sample_labels();
+        let somata = morphology.somata.iter().enumerate().zip(as_neurites);
         let node_of: Vec<Vec<u32>> = somata
-            .map(|(soma, &as_neurite)| match as_neurite {
-                true => push_samples(soma, &mut nodes),
+            .map(|((index, soma), &as_neurite)| match as_neurite {
+                true => push_samples(soma, |sample| labels.of_soma(index, sample), &mut nodes),
                 false => Vec::new(),
             })
             .collect();
@@ -189,7 +194,7 @@ impl Skeleton {
                     radius: f64::from(traced.radius),
                     parent,
                     root: if parent == NONE { root } else { Root::Free },
-                    sample: morphology.sample_ids.get(point).copied().unwrap_or(-1),
+                    sample: labels.of_point(point).into(),
                     kind: SwcType(section.kind.0),
                     section: SectionNumber(id as i32 + 1),
                 });

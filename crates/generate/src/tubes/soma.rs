@@ -11,10 +11,13 @@ impl Assembly<'_> {
     /// Adds all somata.
     pub(super) fn add_somata(&mut self, somata: &Somata<'_>) {
         let stems = self.stems(somata.surfaces.len());
+        let labels = somata.morphology.sample_labels();
         for (index, (soma, stems)) in somata.surfaces.iter().zip(stems).enumerate() {
             if let (Some(soma), Some(soma_sphere)) = (soma, &somata.soma_spheres[index]) {
-                let samples = &somata.morphology.somata[index].samples;
-                let sample = samples.first().map_or(-1, |s| s.id);
+                let sample = match somata.morphology.somata[index].samples.is_empty() {
+                    true => -1,
+                    false => labels.of_soma(index, 0).into(),
+                };
                 self.add_soma(&soma.surface, soma_sphere.center, sample, &stems);
             }
         }

@@ -11,6 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, ReadOptions};
 use neurotess::morphology::edit::{EditReport, Edited};
 use serde::Serialize;
@@ -49,6 +50,10 @@ pub(crate) struct ConvertArgs {
     /// Format to write, where OUT's extension does not tell: swc, asc, h5 or nml
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<String>,
+    /// Keep the samples' own numbers in SWC where they do not ascend from row to row: NEURON refuses such files. The copy's
+    /// samples are numbered from 1 on otherwise
+    #[arg(long)]
+    pub(crate) keep_ids: bool,
     /// Take every warning of the reader as an error
     #[arg(long)]
     pub(crate) strict: bool,
@@ -187,6 +192,7 @@ fn read(path: &Path, args: &ConvertArgs) -> Result<formats::Read, Failure> {
     let options = ReadOptions {
         strict: args.strict,
         zero_for_bad_radii: args.edits.mends_radii(),
+        ..ReadOptions::default()
     };
     read_morphology(path, None, &options)
 }
@@ -200,13 +206,18 @@ fn written(
     out: Option<(&Path, Format)>,
 ) -> Result<Converted, Failure> {
     let failed = |e: OutputError| Failure(format!("{file}: {e}"));
+    let numbers = match args.keep_ids {
+        true => SampleNumbers::Kept,
+        false => SampleNumbers::Ascending,
+    };
     let lost = match out {
         Some((out, format)) if args.dry_run => {
-            formats::write(&edited.morphology, format, io::sink())
+            formats::write_numbered(&edited.morphology, format, numbers, io::sink())
                 .map_err(|e| failed(OutputError::broken(out, e)))?
         }
         Some((out, format)) => {
-            write_morphology(&edited.morphology, format, out, args.force).map_err(failed)?
+            write_morphology(&edited.morphology, format, numbers, out, args.force)
+                .map_err(failed)?
         }
         None => Vec::new(),
     };

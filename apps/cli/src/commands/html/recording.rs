@@ -33,6 +33,9 @@ pub(super) fn read(
             "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
+    if let Some(unknown) = recording.unknown_sections() {
+        reporter.warning(&format!("{}: {unknown}", recording.file));
+    }
     let times = times(time, None)?;
     page_recording(&recording, times, range, cells.len()).map_err(whole)
 }

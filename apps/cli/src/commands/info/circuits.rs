@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use neurotess::circuit::{Circuit, RecordingFile, ReportKind, TimeAxis};
+use neurotess::circuit::{Circuit, Elements, RecordingFile, ReportKind, TimeAxis};
 use serde::Serialize;
 
 use crate::io::circuits;
@@ -116,7 +116,11 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
     let mut reports = Vec::new();
     for (name, path) in &circuit.reports {
         match RecordingFile::open(path) {
-            Ok(recording) => reports.extend(report_infos(name, path, &recording)),
+            Ok(recording) => {
+                let declared = circuit.declared_report(path);
+                let elements = declared.map_or(Elements::Sections, |report| report.elements);
+                reports.extend(report_infos(name, path, elements, &recording));
+            }
             Err(e) => {
                 reporter.failure(&Failure(e.to_string()));
                 errors.push(e.to_string());
@@ -162,7 +166,12 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
     }
 }
 
-fn report_infos(name: &str, path: &std::path::Path, recording: &RecordingFile) -> Vec<ReportInfo> {
+fn report_infos(
+    name: &str,
+    path: &std::path::Path,
+    elements: Elements,
+    recording: &RecordingFile,
+) -> Vec<ReportInfo> {
     let file = path.display().to_string();
     match recording {
         RecordingFile::Report(report) => {
@@ -177,9 +186,10 @@ fn report_infos(name: &str, path: &std::path::Path, recording: &RecordingFile) -
                 ReportInfo {
                     name: name.into(),
                     file: file.clone(),
-                    kind: match values.kind() {
-                        ReportKind::Soma => "soma",
-                        ReportKind::Compartment => "compartment",
+                    kind: match (elements, values.kind()) {
+                        (Elements::Sections, ReportKind::Soma) => "soma",
+                        (Elements::Sections, ReportKind::Compartment) => "compartment",
+                        (others, _) => others.name(),
                     },
                     population: values.name.clone(),
                     time: Some(Time {

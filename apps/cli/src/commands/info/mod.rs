@@ -105,6 +105,7 @@ pub(crate) fn run(args: &InfoArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     let options = ReadOptions {
         strict: args.strict,
+        for_neuron: true,
         ..ReadOptions::default()
     };
     let results = each(&inputs, reporter, |input| measure(input, args, options))?;

@@ -27,8 +27,8 @@ pub(super) fn write<W: Write + Seek>(
         let section = usize::try_from(label.section).ok();
         let section = section.and_then(|number| number.checked_sub(1));
         let stem = section.and_then(|section| stems.get(section)?.as_ref());
-        let is_of_stem = stem
-            .is_some_and(|stem| i64::from(label.point) == stem.sample && stem.is_before(center));
+        let is_of_stem =
+            stem.is_some_and(|stem| label.point == stem.sample && stem.is_before(center));
         (label.section, is_of_stem)
     })?;
     out.write_all(HEADER.as_bytes())?;
@@ -76,7 +76,7 @@ fn write_rows(
 /// Where the stem of a neurite ends.
 struct Stem {
     /// The first sample of the neurite, and where it is.
-    sample: i64,
+    sample: i32,
     end: DVec3,
     /// Along the neurite.
     along: DVec3,
@@ -96,7 +96,7 @@ impl Stem {
         let onwards = (section.range().len() > 1)
             .then(|| (place(morphology.points[first + 1].position) - end).normalize_or_zero());
         Some(Self {
-            sample: *morphology.sample_ids.get(first)?,
+            sample: morphology.sample_labels().of_point(first),
             end,
             along: from_soma + onwards.unwrap_or_default(),
         })

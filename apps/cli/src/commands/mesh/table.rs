@@ -10,7 +10,7 @@ use std::io::{self, Seek, Write};
 
 use glam::DVec3;
 use neurotess::mesh::{FaceLabel, Surface, SurfaceTriangle, WriteError, write_triangles};
-use neurotess::morphology::{Attachment, Morphology};
+use neurotess::morphology::{Attachment, Morphology, SampleLabels};
 
 const HEADER: &str = "triangle,sample,section,position,type\n";
 
@@ -31,7 +31,7 @@ pub(super) fn write<W: Write + Seek>(
     })
 }
 
-fn push(row: &mut Vec<u8>, triangle: &SurfaceTriangle, lines: &Lines) -> io::Result<()> {
+fn push(row: &mut Vec<u8>, triangle: &SurfaceTriangle, lines: &Lines<'_>) -> io::Result<()> {
     let SurfaceTriangle {
         number,
         label,
@@ -43,14 +43,16 @@ fn push(row: &mut Vec<u8>, triangle: &SurfaceTriangle, lines: &Lines) -> io::Res
         section,
         kind,
     } = label;
-    writeln!(row, "{number},{point},{section},{position:.6},{kind}")
+    let sample = lines.labels.own_number(i64::from(*point));
+    writeln!(row, "{number},{sample},{section},{position:.6},{kind}")
 }
 
 /// The traced lines of all sections.
-struct Lines {
+struct Lines<'m> {
     sections: Vec<Line>,
-    /// Where on its line a sample is, by section and number.
-    samples: HashMap<(usize, i64), usize>,
+    labels: SampleLabels<'m>,
+    /// Where on its line a sample is, by section and number in the mesh.
+    samples: HashMap<(usize, i32), usize>,
 }
 
 /// A line through the points of a section, and the point that it hangs on.
@@ -60,8 +62,9 @@ struct Line {
     lengths: Vec<f64>,
 }
 
-impl Lines {
-    fn of(morphology: &Morphology) -> Self {
+impl<'m> Lines<'m> {
+    fn of(morphology: &'m Morphology) -> Self {
+        let labels = morphology.sample_labels();
         let mut samples = HashMap::new();
         let mut sections = Vec::with_capacity(morphology.sections.len());
         for (n, section) in morphology.sections.iter().enumerate() {
@@ -76,12 +79,16 @@ impl Lines {
             };
             for point in points {
                 let at = morphology.points[point].position.as_dvec3() + morphology.origin;
-                samples.insert((n, morphology.sample_ids[point]), line.points.len());
+                samples.insert((n, labels.of_point(point)), line.points.len());
                 line.push(at);
             }
             sections.push(line);
         }
-        Self { sections, samples }
+        Self {
+            sections,
+            labels,
+            samples,
+        }
     }
 
     /// Where on its section a triangle is, as share of the section's length.
@@ -95,7 +102,7 @@ impl Lines {
         let Some(line) = self.sections.get(section) else {
             return MIDDLE;
         };
-        let sample = (section, i64::from(label.point));
+        let sample = (section, label.point);
         line.share(self.samples.get(&sample).copied().unwrap_or(0), center)
     }
 }

@@ -274,6 +274,9 @@ fn over_time(
             "{file}: no values for {without} of {all} cells: drawn gray"
         ));
     }
+    if let Some(unknown) = recording.unknown_sections() {
+        reporter.warning(&format!("{}: {unknown}", recording.file));
+    }
     if args.time.is_none() && recording.is_of_spikes() {
         let file = &recording.file;
         anyhow::bail!("{file}: spikes flash at a time: choose one with --time");

@@ -7,6 +7,7 @@ use std::time::Instant;
 use neurotess::circuit::TimeAxis;
 use neurotess::circuit::write::{self, ReportLayout};
 use neurotess::formats::Format;
+use neurotess::formats::swc::SampleNumbers;
 use neurotess::synth;
 use neurotess::synth::circuit::{
     CIRCUIT, CircuitMorphology, CircuitOptions, DURATION, EDGES, POPULATION, SIMULATION, STEP,
@@ -117,7 +118,13 @@ fn grow_all(
     };
     let results = workers::run(cells, &order, reporter.threads(), |cell| {
         let morphology = synth::grow(&cell.options);
-        let written = write_morphology(&morphology, Format::Swc, &path(cell), force);
+        let written = write_morphology(
+            &morphology,
+            Format::Swc,
+            SampleNumbers::default(),
+            &path(cell),
+            force,
+        );
         progress.done();
         written.map_err(|e| Failure(e.to_string()))
     })?;

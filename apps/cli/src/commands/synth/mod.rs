@@ -6,6 +6,7 @@ mod circuit;
 use std::path::{Path, PathBuf};
 
 use neurotess::formats::Format;
+use neurotess::formats::swc::SampleNumbers;
 use neurotess::synth::{self, Kind, Options};
 use serde::Serialize;
 
@@ -104,7 +105,14 @@ fn grow(options: &Options, out: &Path, force: bool) -> Result<Grown, Failure> {
     let failed = |e: output::OutputError| Failure(e.to_string());
     output::check(out, force).map_err(failed)?;
     let morphology = synth::grow(options);
-    write_morphology(&morphology, Format::Swc, out, force).map_err(failed)?;
+    write_morphology(
+        &morphology,
+        Format::Swc,
+        SampleNumbers::default(),
+        out,
+        force,
+    )
+    .map_err(failed)?;
     Ok(Grown {
         out: out.display().to_string(),
         kind: options.kind.name(),

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use neurotess::circuit::{Circuit, NodeRef, RecordingFile, ReportPopulation, Spikes, TimeAxis};
+use neurotess::circuit::{
+    Circuit, Elements, NodeRef, RecordingFile, ReportPopulation, Spikes, TimeAxis,
+};
 use serde::Serialize;
 
 use super::figure;
@@ -86,7 +88,11 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
                     figure::write(&plot, svg, args.table.force)?;
                     plot.series.len() as u64
                 }
-                None => table::write(&args.table, |rows| values(rows, &chosen, args))?,
+                None => {
+                    let declared = circuit.declared_report(&path);
+                    let elements = declared.map_or(Elements::Sections, |report| report.elements);
+                    table::write(&args.table, |rows| values(rows, &chosen, elements, args))?
+                }
             };
             (rows, nodes)
         }
@@ -130,7 +136,6 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
 
 /// The file of a report.
 fn path_of(circuit: &Circuit, wanted: Option<&std::path::Path>) -> anyhow::Result<PathBuf> {
-    let named = |path: &std::path::Path| circuit.reports.get(path.to_str()?).cloned();
     let names = || {
         let names: Vec<&str> = circuit.reports.keys().map(String::as_str).collect();
         match names.is_empty() {
@@ -139,11 +144,7 @@ fn path_of(circuit: &Circuit, wanted: Option<&std::path::Path>) -> anyhow::Resul
         }
     };
     match wanted {
-        Some(wanted) if wanted.exists() => Ok(wanted.to_path_buf()),
-        Some(wanted) => match named(wanted) {
-            Some(path) => Ok(path),
-            None => anyhow::bail!("{}: no such report; {}", wanted.display(), names()),
-        },
+        Some(wanted) => Ok(circuit.report_file(wanted)?),
         None => match circuit.reports.values().collect::<Vec<_>>()[..] {
             [only] => Ok(only.clone()),
             _ => usage(format!("which report? --report FILE or NAME; {}", names())),
@@ -152,11 +153,18 @@ fn path_of(circuit: &Circuit, wanted: Option<&std::path::Path>) -> anyhow::Resul
 }
 
 /// Writes a report's rows, time by time; returns how many there are.
-fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::Result<u64> {
+fn values(
+    rows: &mut Rows,
+    chosen: &[Chosen<'_>],
+    elements: Elements,
+    args: &ReportArgs,
+) -> anyhow::Result<u64> {
     let per_compartment = args.per == Per::Compartment;
     let mut heading = vec!["time_ms", "population", "node_id"];
-    if per_compartment {
-        heading.extend(["section", "position"]);
+    match (per_compartment, elements) {
+        (false, _) => {}
+        (true, Elements::Sections) => heading.extend(["section", "position"]),
+        (true, others) => heading.push(others.name()),
     }
     heading.push("value");
     rows.write_record(&heading)?;
@@ -169,7 +177,7 @@ fn values(rows: &mut Rows, chosen: &[Chosen<'_>], args: &ReportArgs) -> anyhow::
         for frame in frames {
             let values = population.values(frame, places.compartments())?;
             let time = rounded(population.time.time_of(frame));
-            count += write_rows(&places, rows, population, &time, &values)?;
+            count += write_rows(&places, rows, population, elements, &time, &values)?;
         }
     }
     if let (false, Some((population, _))) = (any, chosen.first()) {
@@ -218,6 +226,7 @@ fn write_rows(
     places: &Places,
     rows: &mut Rows,
     population: &ReportPopulation,
+    elements: Elements,
     time: &str,
     values: &[f32],
 ) -> anyhow::Result<u64> {
@@ -242,7 +251,12 @@ fn write_rows(
             let (section, position) = (section.to_string(), position.to_string());
             let value = table::cell(f64::from(*value));
             let name = &population.name;
-            rows.write_record([time, name, &node, &section, &position, &value])?;
+            match elements {
+                Elements::Sections => {
+                    rows.write_record([time, name, &node, &section, &position, &value])?;
+                }
+                _ => rows.write_record([time, name, &node, &section, &value])?,
+            }
             count += 1;
         }
     }

@@ -21,6 +21,7 @@ mod palettes;
 mod parts;
 mod render;
 mod resume;
+mod sections;
 mod snudda;
 mod streams;
 mod synth;

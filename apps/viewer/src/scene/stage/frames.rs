@@ -71,6 +71,7 @@ impl Stage {
                 spikes: recording.is_of_spikes(),
                 range: range.unwrap_or(*all),
                 without: [recording.without(), recording.places()],
+                unknown: recording.unknown_sections().map(ToString::to_string),
             });
         if facts != state.playback.facts {
             state.playback.set_facts(facts);
