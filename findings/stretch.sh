@@ -5,9 +5,10 @@
 # other side. From their first samples on they are 42.36 µm long.
 #
 #   42.36 µm   MorphIO 3.5.0, NeuroM 4.0.6; NEURON 9.0.2, jaxley 0.14.0 and arbor 0.12.2 without their soma of 10 µm
-#   54.36 µm   navis 1.12.0, swcgeom 0.21.6, osteoid 0.7.4, bsb-core 8.0.2, MorphoPy 0.7.6: from the soma's center on
+#   54.36 µm   navis 1.12.0, swcgeom 0.21.6, osteoid 0.7.4, bsb-core 8.0.2, MorphoPy 0.7.6, brian2 2.10.1: from the
+#              soma's center on
 #
-# brian2 2.10.1 counts as the latter; it needs Python 3.12 or newer, and is in brian2.sh.
+# brian2 needs Python 3.12 or newer.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -15,9 +16,20 @@ cd "$work"
 "${PYTHON:-python3}" -m venv a
 "${PYTHON:-python3}" -m venv b
 "${PYTHON:-python3}" -m venv c
+newer() { # a Python that brian2 has wheels for
+    local python
+    for python in "${PYTHON:-python3}" python3.12 python3.13 "$HOME"/.pyenv/versions/3.1[2-9]*/bin/python; do
+        "$python" -c 'import sys; sys.exit(sys.version_info < (3, 12))' 2> errors && echo "$python" && return
+    done
+    echo "brian2 2.10.1 needs Python 3.12 or newer" >&2
+    return 1
+}
+python=$(newer)
+"$python" -m venv d
 a/bin/pip install -q neuron==9.0.2 morphio==3.5.0 neurom==4.0.6 jaxley==0.14.0 arbor==0.12.2
 b/bin/pip install -q navis==1.12.0 swcgeom==0.21.6 osteoid==0.7.4
 c/bin/pip install -q bsb-core==8.0.2 MorphoPy==0.7.6
+d/bin/pip install -q brian2==2.10.1
 
 cat > cell.swc <<'SWC'
 1 1 0 0 0 5 -1
@@ -92,6 +104,19 @@ table = pandas.read_csv("cell.swc", sep=r"\s+", names=names)
 numbers = compute_morphometric_statistics(NeuronTree.NeuronTree(swc=table))
 show("MorphoPy", float(numbers["total_length"].iloc[0]), 54.36)
 PY
-for program in a b c; do
+cat > d.py <<'PY'
+from common import show
+
+from brian2 import Morphology, um
+
+
+def length(section):
+    own = float(sum(section.length / um)) if section.type != "soma" else 0
+    return own + sum(length(child) for child in section.children)
+
+
+show("brian2", length(Morphology.from_file("cell.swc", spherical_soma=True)), 54.36)
+PY
+for program in a b c d; do
     $program/bin/python $program.py 2> errors || { cat errors; exit 1; }
 done

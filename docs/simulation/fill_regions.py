@@ -2,7 +2,8 @@
 
 usage: fill_regions.py CELL.smesh TETRAHEDRA.vtu
 
-Regions are the soma and its neurites, numbered as in CELL.smesh; the soma's is 0.
+Regions are the soma and its neurites, numbered as in CELL.smesh; the soma's is 0. Corners of the membrane that TetGen
+gives to none have −1.
 """
 
 import sys
@@ -33,6 +34,10 @@ found = numpy.asarray(found).ravel().astype(int) - 1
 
 edges = nodes[tetrahedra[:, 1:]] - nodes[tetrahedra[:, :1]]
 volumes = numpy.abs(numpy.linalg.det(edges)) / 6
+# A part in which no point lies has the next free number, as if it had been asked for.
+nameless = found > regions[:, 0].max()
+if nameless.any():
+    sys.exit(f"{volumes[nameless].sum():.2f} µm³ are a region without a point in {sys.argv[1]}")
 for number, _, _, _, kind in regions:
     inside = found == int(number)
     if not inside.any():
