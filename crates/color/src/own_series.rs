@@ -1,5 +1,6 @@
 //! Numbers of one's own over time: a recording that is in memory, of cells that need no circuit.
 
+use itertools::Itertools;
 use neurotess_circuit::TimeAxis;
 use neurotess_render::color::category;
 
@@ -56,7 +57,7 @@ impl Memory {
         for of in &series.cells {
             assert_eq!(of.values.len(), frames * of.columns, "frames of columns");
         }
-        let color_keys = cells.iter().zip(&series.cells);
+        let color_keys = cells.iter().zip_eq(&series.cells);
         let color_keys = color_keys.map(|(cell, of)| keys(cell, of)).collect();
         let memory = Self {
             cells: series.cells,

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use itertools::Itertools;
 use neurotess_mesh::{Role, TracingPoint};
 use neurotess_render::color::{category, fraction};
 
@@ -31,7 +32,7 @@ impl OwnValues {
     /// The number of each tracing point by cell, NaN where there is none; and the numbers at both ends of a scale: those of
     /// `range`, or the least and the greatest.
     pub fn spread(&self, cells: &[Cell<'_>], range: Option<[f32; 2]>) -> (Vec<Vec<f32>>, [f32; 2]) {
-        let pairs = cells.iter().zip(&self.cells);
+        let pairs = cells.iter().zip_eq(&self.cells);
         let shown: Vec<Vec<f32>> = pairs
             .map(|(cell, values)| on_mesh(cell, &values.points, values.soma, f32::NAN))
             .collect();

@@ -14,6 +14,7 @@ mod unknown;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use itertools::Itertools;
 use neurotess_circuit::{
     Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
@@ -181,7 +182,7 @@ impl Recording {
             known.extend(nodes.iter().map(|node| node.population));
             let shown = nodes
                 .iter()
-                .zip(&population.nodes)
+                .zip_eq(&population.nodes)
                 .filter_map(|(node, &id)| {
                     let instances = of_node.get(node)?;
                     Some((id, instances.clone()))
@@ -275,7 +276,7 @@ impl Recording {
                     };
                     lit.filter_map(of).collect::<Vec<_>>()
                 };
-                let all = spikes.populations.iter().zip(firing).flat_map(flashes);
+                let all = spikes.populations.iter().zip_eq(firing).flat_map(flashes);
                 Ok(self.flashes(all, shows))
             }
             Source::Memory(memory) => {
@@ -294,7 +295,7 @@ impl Recording {
     ) -> Result<ReportFrame, RecordingError> {
         let mut frame_values = ReportFrame::none(self.has_values.len());
         let mut any = false;
-        for (population, part) in report.populations.iter().zip(parts) {
+        for (population, part) in report.populations.iter().zip_eq(parts) {
             let Some(frame) = population.time.frame_at(time) else {
                 continue;
             };

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use itertools::Itertools;
 use neurotess_circuit::{Compartment, ReportPopulation, TimeAxis};
 use neurotess_morphology::{Morphology, Program, SectionId, SectionNumbers, SectionPlace};
 
@@ -40,7 +41,7 @@ impl Recording {
         let Source::Report(report, parts) = &self.source else {
             return Ok(None);
         };
-        for (place, (population, part)) in report.populations.iter().zip(parts).enumerate() {
+        for (place, (population, part)) in report.populations.iter().zip_eq(parts).enumerate() {
             // Instances are in ascending order.
             let found = part.spans.binary_search_by_key(&instance, |(of, _)| *of);
             let Ok(found) = found else { continue };
@@ -121,12 +122,12 @@ impl Recording {
             return None;
         };
         let mut times = Vec::new();
-        for (population, instances) in spikes.populations.iter().zip(firing) {
+        for (population, instances) in spikes.populations.iter().zip_eq(firing) {
             let own = |(_, shown): &(&u64, &Vec<usize>)| shown.contains(&instance);
             let Some((&id, _)) = instances.iter().find(own) else {
                 continue;
             };
-            let all = population.times.iter().zip(&population.nodes);
+            let all = population.times.iter().zip_eq(&population.nodes);
             times.extend(all.filter(|(_, node)| **node == id).map(|(time, _)| *time));
         }
         times.sort_by(f64::total_cmp);

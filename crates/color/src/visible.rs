@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use itertools::Itertools;
 use neurotess_render::VisibleKey;
 use neurotess_render::color::CATEGORY_BIT;
 
@@ -93,13 +94,13 @@ impl Recording {
         match &self.source {
             Source::Report(report, _) => {
                 let mut any = false;
-                for (population, part) in report.populations.iter().zip(&visible.parts) {
+                for (population, part) in report.populations.iter().zip_eq(&visible.parts) {
                     let Some(frame) = population.time.frame_at(time) else {
                         continue;
                     };
                     any = true;
                     let read = population.values(frame, &part.compartments)?;
-                    for (&key, value) in part.keys.iter().zip(read) {
+                    for (&key, value) in part.keys.iter().zip_eq(read) {
                         values[key] = value;
                     }
                 }
@@ -111,20 +112,20 @@ impl Recording {
                 if self.time.frame_at(time).is_none() {
                     return Err(self.no_values(time));
                 }
-                for (value, key) in values.iter_mut().zip(&visible.keys) {
+                for (value, key) in values.iter_mut().zip_eq(&visible.keys) {
                     let own = memory.at(time, key.instance as usize).unwrap_or_default();
                     *value = own.get(key.color_key as usize).copied().unwrap_or(f32::NAN);
                 }
             }
             Source::Spikes(spikes, firing) => {
                 let mut flashes: HashMap<usize, f32> = HashMap::new();
-                for (population, instances) in spikes.populations.iter().zip(firing) {
+                for (population, instances) in spikes.populations.iter().zip_eq(firing) {
                     for (id, flash) in population.flashes(time, decay) {
                         let shown = instances.get(&id).into_iter().flatten();
                         flashes.extend(shown.map(|&instance| (instance, flash)));
                     }
                 }
-                for (value, key) in values.iter_mut().zip(&visible.keys) {
+                for (value, key) in values.iter_mut().zip_eq(&visible.keys) {
                     let instance = key.instance as usize;
                     if key.color_key & CATEGORY_BIT == 0 && self.has_values[instance] {
                         *value = flashes.get(&instance).copied().unwrap_or(0.0);

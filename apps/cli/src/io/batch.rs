@@ -2,6 +2,8 @@
 
 use std::sync::atomic::Ordering;
 
+use itertools::Itertools;
+
 use super::inputs::{Input, Inputs};
 use super::workers;
 use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug};
@@ -25,7 +27,7 @@ pub(crate) fn each<T: Send>(
         result
     })?;
     drop(progress);
-    let named = inputs.files.iter().zip(results);
+    let named = inputs.files.iter().zip_eq(results);
     let entries = named.map(|(input, result)| {
         let file = input.path.display().to_string();
         match result.unwrap_or_else(|panic| Err(bug(&file, &panic))) {

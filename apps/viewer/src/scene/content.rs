@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use itertools::Itertools;
 use neurotess::coloring::{ClosestColors, Coloring, Recording, closest};
 use neurotess::mesh::CoarseMesh;
 use neurotess::render::bounds::{bounds, merged};
@@ -169,7 +170,7 @@ pub(crate) struct SceneInstance {
 /// Instances of all neurons. `sources`: the templates, sorted by id.
 pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
     let placements = state.placements();
-    let neurons = state.document.neurons.iter().zip(placements.iter());
+    let neurons = state.document.neurons.iter().zip_eq(placements.iter());
     let instances = neurons.map(|(neuron, &placement)| {
         let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
         SceneInstance {
@@ -192,7 +193,7 @@ pub(crate) fn templates(
     let none = CoarseMesh::default();
     let list: Vec<Template<'_>> = sources
         .iter()
-        .zip(&coloring.color_keys)
+        .zip_eq(&coloring.color_keys)
         .map(|(source, color_keys)| Template {
             mesh: if empty { &none } else { &source.generated.mesh },
             color_keys,

@@ -108,7 +108,7 @@ impl Explorer {
         let coloring = Arc::clone(&content.coloring);
         let (gpu, ctx, memory) = (Arc::clone(gpu), ctx.clone(), self.memory);
         let work = move |_: &Progress| {
-            let cells = meshes.par_iter().zip(&coloring.color_keys);
+            let cells = meshes.par_iter().zip_eq(&coloring.color_keys);
             let proxies: Vec<Arc<Proxy>> = cells
                 .map(|((generated, proxy), color_keys)| match proxy {
                     Some(proxy) => Arc::new(proxy.with_color_keys(color_keys)),

@@ -7,6 +7,7 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
+use itertools::Itertools;
 use neurotess::output::{Output, OutputError};
 use neurotess::refine::LodCriterion;
 use neurotess::render::color::ColorTable;
@@ -61,7 +62,7 @@ pub(crate) fn pictures(
     let mut film = None;
     // Of the first picture; others may have more or fewer.
     let mut tiles = 0;
-    for (number, (film_frame, file)) in film_frames.iter().zip(&files).enumerate() {
+    for (number, (film_frame, file)) in film_frames.iter().zip_eq(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
         if progress.is_canceled() {
             return Err(stopped());

@@ -3,6 +3,7 @@
 mod options;
 mod picture;
 
+use itertools::Itertools;
 use neurotess_color::{Cell, Coloring, coloring};
 use neurotess_refine::LodCriterion;
 use neurotess_render::overlay::{MARGIN, Overlay, OverlayOptions};
@@ -138,7 +139,7 @@ fn source(
     coloring: &Coloring,
     options: &DrawOptions,
 ) -> Result<Adaptive, DrawError> {
-    let colored = cells.iter().zip(&coloring.color_keys);
+    let colored = cells.iter().zip_eq(&coloring.color_keys);
     let list: Vec<Template<'_>> = colored
         .map(|(cell, color_keys)| Template {
             mesh: &cell.generated.mesh,

@@ -124,8 +124,9 @@ impl Overlay {
         overlay
     }
 
-    /// [`Overlay::new`], and the cameras. If the legend would cover something, the scene is fitted again beside it:
-    /// `fit` gives the camera with these margins (left, right, top, bottom), if it may be another one.
+    /// [`Overlay::new`], and as many cameras as were given. If the legend would cover something, the scene is fitted
+    /// again beside it: `fit` gives the camera of all pictures with these margins (left, right, top, bottom), if it may be
+    /// another one.
     pub fn with_room(
         options: &OverlayOptions,
         size: [u32; 2],
@@ -144,7 +145,10 @@ impl Overlay {
             fit([left, right, MARGIN, MARGIN])
         });
         match beside {
-            Some(camera) => (Self::new(options, size, &[camera], spheres), vec![camera]),
+            Some(camera) => {
+                let all = vec![camera; cameras.len()];
+                (Self::new(options, size, &all[..1], spheres), all)
+            }
             None => (overlay, cameras),
         }
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use glam::DVec3;
+use itertools::Itertools;
 use neurotess::circuit::{Circuit, Instance, soma_center};
 use neurotess::formats::Format;
 use neurotess::morphology::edit::{self, Edit};
@@ -66,7 +67,7 @@ pub(super) fn run(
         result
     })?;
     drop(progress);
-    let entries = results.into_iter().zip(&cells.instances);
+    let entries = results.into_iter().zip_eq(&cells.instances);
     let entries = entries.map(|(result, instance)| {
         let file = &cells.circuit.templates[instance.template.index()].path;
         let file = file.display().to_string();

@@ -8,6 +8,7 @@ mod values;
 
 use std::io::Write;
 
+use itertools::Itertools;
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{Cell, ColorScheme, OwnColors};
 use neurotess::render::{Look, Placement};
@@ -116,7 +117,7 @@ impl Content<'_> {
         let recording = self.recording(&cells, &nodes, reporter)?;
         let page_cells: Vec<PageCell<'_>> = cells
             .iter()
-            .zip(self.placements)
+            .zip_eq(self.placements)
             .map(|(&cell, &(_, placement))| PageCell { cell, placement })
             .collect();
         let of = self.instances.map(|of| (&of.circuit, &nodes[..]));
@@ -134,7 +135,7 @@ impl Content<'_> {
     }
 
     fn cells(&self) -> Vec<Cell<'_>> {
-        let named = self.placements.iter().zip(self.names);
+        let named = self.placements.iter().zip_eq(self.names);
         named
             .map(|(&(cell, _), name)| Cell {
                 name,

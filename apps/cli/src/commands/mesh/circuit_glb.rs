@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use itertools::Itertools;
 use neurotess::circuit::{Circuit, Instance};
 use neurotess::mesh::{Format, GlbNode, Surface, WriteError, WriteOptions, write_glb};
 use serde::Serialize;
@@ -138,7 +139,7 @@ fn prepare_all(
     })?;
     drop(progress);
     let mut prepared = BTreeMap::new();
-    for (&template, result) in templates.iter().zip(results) {
+    for (&template, result) in templates.iter().zip_eq(results) {
         let path = &circuit.templates[template as usize].path;
         match result.unwrap_or_else(|panic| Err(bug(&path.display().to_string(), &panic))) {
             Ok(cell) => {

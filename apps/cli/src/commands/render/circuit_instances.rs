@@ -1,5 +1,6 @@
 //! Instances of a circuit that are drawn, with what colors need.
 
+use itertools::Itertools;
 use neurotess::circuit::{Circuit, Instance, NodeRef};
 use neurotess::coloring::Node;
 
@@ -32,7 +33,7 @@ impl CircuitInstances {
     /// The cell that each instance shows, as given, and its node.
     pub(crate) fn with_cells(&self, cells: &[usize]) -> Vec<(usize, Option<NodeRef>)> {
         let nodes = self.instances.iter().map(|instance| Some(instance.node));
-        cells.iter().copied().zip(nodes).collect()
+        cells.iter().copied().zip_eq(nodes).collect()
     }
 
     /// The name of each instance.

@@ -3,6 +3,7 @@
 use std::io::BufWriter;
 use std::path::Path;
 
+use itertools::Itertools;
 use neurotess::render::overlay::{Overlay, OverlayOptions};
 use neurotess::render::{
     BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, PictureOptions, PngWriter,
@@ -83,7 +84,7 @@ pub(super) fn draw(
     let mut stats = Stats::new(gpu, placements.len());
     let mut counted = SourceStats::default();
     let progress = Progress::new(reporter, files.len(), "pictures");
-    for (number, (camera, file)) in cameras.iter().zip(files).enumerate() {
+    for (number, (camera, file)) in cameras.iter().zip_eq(files).enumerate() {
         let near = camera.near(around);
         let legend = colored.legend(number);
         let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);

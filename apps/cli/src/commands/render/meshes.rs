@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use itertools::Itertools;
 use neurotess::coloring::{MeshValues, mesh_color};
 use neurotess::mesh::{self, SurfaceMesh};
 use neurotess::render::bounds::surface_points;
@@ -123,7 +124,7 @@ impl SceneMeshes {
             return Ok(None);
         }
         let mut all = Vec::new();
-        for (SceneMesh { arg, surface, .. }, keys) in self.meshes.into_iter().zip(keys) {
+        for (SceneMesh { arg, surface, .. }, keys) in self.meshes.into_iter().zip_eq(keys) {
             let (color_key, of_vertices) = match keys {
                 MeshKeys::Whole(key) => (*key, &[][..]),
                 MeshKeys::OfVertices(keys) => (0, &keys[..]),

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use itertools::Itertools;
 use neurotess::cache::{Cache, Summary};
 use neurotess::circuit::{Compartment, Instance, soma_center};
 use neurotess::coloring::cuts;
@@ -137,7 +138,7 @@ fn of_circuit(path: &Path, args: &RenderArgs, reporter: &Reporter) -> anyhow::Re
     }
     // Indices of cells among those that did not fail; none for those that did.
     let mut centers = Vec::new();
-    for (entry, index) in entries.iter().zip(of_template.values_mut()) {
+    for (entry, index) in entries.iter().zip_eq(of_template.values_mut()) {
         *index = centers.len();
         match entry {
             Entry::Done(cell) => centers.push(soma_center(&cell.morphology)),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use itertools::Itertools;
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Camera, Combined, DEFAULT_BUDGET, Exploration,
@@ -151,7 +152,7 @@ impl CellSource {
         };
         let list: Vec<Template<'_>> = cells
             .iter()
-            .zip(&colored.coloring.color_keys)
+            .zip_eq(&colored.coloring.color_keys)
             .map(|(cell, color_keys)| Template {
                 mesh: &cell.mesh,
                 color_keys,
@@ -245,7 +246,7 @@ fn budgeted(
     } = *job;
     let proxies: Vec<Arc<Proxy>> = cells
         .par_iter()
-        .zip(&colored.coloring.color_keys)
+        .zip_eq(&colored.coloring.color_keys)
         .map(|(cell, color_keys)| match &cell.proxy {
             Some(proxy) => Arc::new(proxy.with_color_keys(color_keys)),
             None => Arc::new(Proxy::new(&cell.mesh, color_keys)),
@@ -282,7 +283,7 @@ fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<CellSource> {
     }
     let surfaces: Vec<PrerefinedSurface<'_>> = cells
         .iter()
-        .zip(&colored.coloring.color_keys)
+        .zip_eq(&colored.coloring.color_keys)
         .map(|(cell, color_keys)| PrerefinedSurface {
             mesh: &cell.mesh,
             color_keys,

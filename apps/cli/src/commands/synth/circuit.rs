@@ -4,6 +4,7 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use itertools::Itertools;
 use neurotess::circuit::TimeAxis;
 use neurotess::circuit::write::{self, ReportLayout};
 use neurotess::formats::Format;
@@ -130,7 +131,7 @@ fn grow_all(
     })?;
     drop(progress);
     let mut all = true;
-    for (cell, result) in cells.iter().zip(results) {
+    for (cell, result) in cells.iter().zip_eq(results) {
         let file = path(cell).display().to_string();
         if let Err(failure) = result.unwrap_or_else(|panic| Err(bug(&file, &panic))) {
             reporter.failure(&failure);

@@ -5,6 +5,7 @@ mod circuit;
 
 use std::path::{Path, PathBuf};
 
+use itertools::Itertools;
 use neurotess::formats::Format;
 use neurotess::formats::swc::SampleNumbers;
 use neurotess::synth::{self, Kind, Options};
@@ -41,7 +42,7 @@ pub(crate) fn run(args: &SynthArgs, reporter: &Reporter) -> anyhow::Result<()> {
         grown
     })?;
     drop(progress);
-    let named = cells.iter().zip(results);
+    let named = cells.iter().zip_eq(results);
     let entries = named.map(|((_, out), result)| {
         let file = out.display().to_string();
         match result.unwrap_or_else(|panic| Err(bug(&file, &panic))) {

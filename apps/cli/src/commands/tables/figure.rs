@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::Path;
 
+use itertools::Itertools;
 use neurotess::circuit::{Circuit, NodeRef, Spikes};
 use neurotess::output::write_into;
 use neurotess::plot::{Axis, Data, Plot, Series};
@@ -37,7 +38,7 @@ pub(super) fn values(
         for frame in frames(&population.time, time) {
             let at = (population.time.time_of(frame) * 1e9).round() / 1e9;
             let values = population.values(frame, places.compartments())?;
-            for (line, value) in lines.iter_mut().zip(places.lines(&values)) {
+            for (line, value) in lines.iter_mut().zip_eq(places.lines(&values)) {
                 line.push([at, value]);
             }
         }
@@ -59,7 +60,11 @@ pub(super) fn raster(
     let mut rows: BTreeMap<NodeRef, (String, Vec<f64>)> = BTreeMap::new();
     for population in &spikes.populations {
         let nodes = population.nodes_in(circuit, &spikes.file)?;
-        let all = population.times.iter().zip(&population.nodes).zip(nodes);
+        let all = population
+            .times
+            .iter()
+            .zip_eq(&population.nodes)
+            .zip_eq(nodes);
         for ((&at, id), node) in
             all.filter(|((at, _), node)| within(**at) && selected.contains(node))
         {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use itertools::Itertools;
 use neurotess::circuit::{
     Circuit, Elements, NodeRef, RecordingFile, ReportPopulation, Spikes, TimeAxis,
 };
@@ -209,7 +210,11 @@ fn firing(
     let mut count = 0;
     for population in &spikes.populations {
         let nodes = population.nodes_in(circuit, &spikes.file)?;
-        let spikes = population.times.iter().zip(&population.nodes).zip(nodes);
+        let spikes = population
+            .times
+            .iter()
+            .zip_eq(&population.nodes)
+            .zip_eq(nodes);
         for ((&at, id), node) in spikes {
             if is_within(at, time) && selected.contains(&node) {
                 rows.write_record([&rounded(at), &population.name, &id.to_string()])?;
@@ -247,7 +252,7 @@ fn write_rows(
             count += 1;
             continue;
         }
-        for ((section, position), value) in along.iter().zip(own) {
+        for ((section, position), value) in along.iter().zip_eq(own) {
             let (section, position) = (section.to_string(), position.to_string());
             let value = table::cell(f64::from(*value));
             let name = &population.name;

@@ -29,3 +29,4 @@ mod tables;
 mod values;
 mod view;
 mod view_keys;
+mod written;
