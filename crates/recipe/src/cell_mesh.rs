@@ -8,6 +8,7 @@ use neurotess_morphology::Morphology;
 use neurotess_union::UnionError;
 
 use crate::merged::Merged;
+use crate::refined::vertex_count;
 use crate::surface::CellSurface;
 use crate::thinning::Thinning;
 use crate::{MeshError, MeshOptions, Stage, Watch, soma_mesh, verdict};
@@ -135,6 +136,10 @@ impl CellMesh {
     ) -> Result<Self, MeshError> {
         if generated.mesh.patches.is_empty() {
             return Err(MeshError::Empty);
+        }
+        let vertices = vertex_count(&generated.mesh, options);
+        if vertices > u32::MAX as usize {
+            return Err(MeshError::TooManyVertices(vertices));
         }
         if options.merges() {
             watch.tell(Stage::Merge, 0, 0);

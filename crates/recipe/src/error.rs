@@ -190,6 +190,9 @@ pub enum MeshError {
         /// The file's number of a sample nearby; −1 where none is known.
         sample: i32,
     },
+    /// Indices of vertices have 32 bits.
+    #[error("the surface would have {0} vertices, of which 4294967295 at most can be told apart")]
+    TooManyVertices(usize),
     /// A fault of ours.
     #[error(transparent)]
     Unsound(#[from] Unsound),
@@ -223,6 +226,11 @@ impl MeshError {
         let remedy = match self {
             Self::Options(error) => return error.told(spelling),
             Self::Empty => format!(": check {} and {}", name(O::Types), name(O::Soma)),
+            Self::TooManyVertices(_) => format!(
+                ": lower {}, or choose {}",
+                name(O::Level),
+                name(O::MaxError)
+            ),
             Self::StillCrosses { .. } => format!(": try another {}", name(O::Level)),
             Self::CutOff { .. } => format!(
                 ": mend the tracing there, or use {}",

@@ -20,6 +20,10 @@
 //! like, and tubes that would close a loop become thinner. The parts are those of `generate`, `refine` and `union`.
 #![forbid(unsafe_code)]
 
+/// Raised when the same tracing and options give another mesh than before: what keeps meshes from one build to the next
+/// compares it.
+pub const MESHES: u32 = 2;
+
 mod cell_mesh;
 mod checks;
 #[cfg(feature = "render")]

@@ -16,7 +16,7 @@ pub const HIGHEST_LEVEL: u32 = 64;
 
 /// Highest level of edges along neurites that are cut by length: sparse tracings have segments of hundreds of
 /// radii. It is bounded, so that thin paths of a careless tracing do not fill the memory.
-const HIGHEST_LEVEL_BY_LENGTH: u32 = 256;
+pub const HIGHEST_LEVEL_BY_LENGTH: u32 = 256;
 
 /// The share of the permitted error that each direction of a patch may take, around and along; the
 /// rest is for the error of flat triangles on a twisted quad. Checked by `adaptive_error_is_kept`.

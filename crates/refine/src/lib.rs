@@ -44,7 +44,7 @@ pub use bounding_sphere::{patch_sphere, sphere_around};
 pub use coarse_surface::CoarseSurface;
 pub use decode::{POINTS_OF_SPHERE, SHAPED_U32S};
 pub use evaluate::SOMA_FILLET;
-pub use level::HIGHEST_LEVEL;
+pub use level::{HIGHEST_LEVEL, HIGHEST_LEVEL_BY_LENGTH};
 pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
 pub use pack::{dequantized, pack};
 pub use part::{MeshPart, PATCHES_OF_SPHERE, PartLayout};

@@ -20,7 +20,8 @@ pub(crate) struct Edge {
     pub(crate) to: u32,
     pub(crate) kind: EdgeKind,
     pub(crate) level: u16,
-    /// Number of its first inner vertex.
+    /// Number of its first inner vertex, of which surfaces that have more than 32 bits of them keep the low ones: such
+    /// can be counted only.
     pub(crate) first: u32,
 }
 
@@ -28,8 +29,9 @@ pub(crate) struct Edge {
 pub(crate) struct Plan {
     pub(crate) edges: Vec<Edge>,
     pub(crate) patch_edges: Vec<[u32; 4]>,
-    /// Number of the first inner vertex of each patch, and one past the last of all.
+    /// Number of the first inner vertex of each patch, as in [`Edge::first`].
     pub(crate) patch_first: Vec<u32>,
+    pub(crate) vertices: u64,
     pub(crate) triangles: usize,
     pub(crate) quads: usize,
 }
@@ -57,33 +59,34 @@ impl Plan {
                 let [(a, ta), (b, tb)] = &ends;
                 edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u16;
             });
-        let mut next = mesh.vertices.len() as u32;
+        let mut next = mesh.vertices.len() as u64;
         for edge in &mut edges {
-            edge.first = next;
-            next += u32::from(edge.level) - 1;
+            edge.first = next as u32;
+            next += u64::from(edge.level) - 1;
         }
         let mut plan = Self {
             edges,
             patch_edges,
             patch_first: Vec::new(),
+            vertices: 0,
             triangles: 0,
             quads: 0,
         };
-        plan.patch_first.reserve(mesh.patches.len() + 1);
+        plan.patch_first.reserve(mesh.patches.len());
         for patch in 0..mesh.patches.len() {
             let grid = plan.grid(mesh, options, patch);
-            plan.patch_first.push(next);
-            next += (grid.nx - 1) * (grid.ny - 1);
+            plan.patch_first.push(next as u32);
+            next += u64::from(grid.nx - 1) * u64::from(grid.ny - 1);
             let (triangles, quads) = grid.face_counts(options.quads);
             plan.triangles += triangles;
             plan.quads += quads;
         }
-        plan.patch_first.push(next);
+        plan.vertices = next;
         plan
     }
 
     pub(crate) fn vertex_count(&self) -> usize {
-        self.patch_first.last().map_or(0, |&n| n as usize)
+        usize::try_from(self.vertices).unwrap_or(usize::MAX)
     }
 
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {

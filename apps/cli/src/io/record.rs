@@ -6,8 +6,9 @@
 //! ```
 //!
 //! **Theory.** A file is up to date if it is the one that was recorded (length and time), was made
-//! with the same options (a hash), and its input is the one that was read (length and time).
-//! Options that do not change the file, like --threads, are not in the hash.
+//! with the same options (a hash), and its inputs are those that were read (names, lengths and times).
+//! Options that do not change the file, like --threads, are not in the hash; the number of `recipe::MESHES` is, which
+//! is raised when meshes change.
 //!
 //! **Practice.** The line is appended before the file gets its name: a run that is killed between
 //! the two leaves a line without a file, never a file with a line of other options. Lines of
@@ -46,6 +47,16 @@ impl Stamp {
         fs::metadata(path).ok().and_then(|data| Self::new(&data))
     }
 
+    /// Of each file that an output is made of, in the order of the job; none if one is missing.
+    pub(crate) fn of_inputs(job: &Job) -> Option<Vec<Self>> {
+        let first = formats::member(&job.input).0;
+        let further = job.further.iter().map(PathBuf::as_path);
+        std::iter::once(first)
+            .chain(further)
+            .map(Self::of)
+            .collect()
+    }
+
     /// Of several files as one: all bytes, and the latest time. None if one is missing.
     fn of_all(paths: &[PathBuf]) -> Option<Self> {
         let none = Self {
@@ -77,9 +88,19 @@ struct Line {
     is: Stamp,
     options: String,
     of: Stamp,
+    /// Of the inputs after the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    further: Vec<Stamp>,
     /// The files that were written instead of it, if it was written in parts: `is` is of all of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     parts: Vec<String>,
+}
+
+impl Line {
+    /// Whether the output was made of these inputs.
+    fn is_of(&self, inputs: &[Stamp]) -> bool {
+        inputs.split_first() == Some((&self.of, &self.further[..]))
+    }
 }
 
 /// What is known of an output.
@@ -156,7 +177,7 @@ impl OutputRecord {
         if is.is_none() && !job.parts {
             return OutputState::Missing;
         }
-        let of = Stamp::of(formats::member(&job.input).0);
+        let of = Stamp::of_inputs(job);
         let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let lines = known.get(&self.name(&job.out)).into_iter().flatten();
         let is_that = |line: &&Line| match job.parts {
@@ -169,13 +190,13 @@ impl OutputRecord {
         let incomplete = job.beside.as_ref().is_some_and(|beside| !beside.exists());
         match lines.rev().find(is_that) {
             Some(line) if line.options != self.hash(job) => OutputState::OtherOptions,
-            Some(line) if Some(line.of) != of => OutputState::OtherInput,
+            Some(line) if !of.as_ref().is_some_and(|of| line.is_of(of)) => OutputState::OtherInput,
             Some(_) if incomplete => OutputState::Incomplete,
             Some(_) => OutputState::Right,
             None if job.parts => OutputState::Missing,
             None if of
                 .zip(is)
-                .is_some_and(|(of, is)| is.modified >= of.modified) =>
+                .is_some_and(|(of, is)| of.iter().all(|input| is.modified >= input.modified)) =>
             {
                 OutputState::Newer
             }
@@ -189,12 +210,16 @@ impl OutputRecord {
         known.contains_key(&self.name(&job.out))
     }
 
-    /// Records a file that is about to get its name, or those of its parts. `made`: their names, and where they are
-    /// until then.
-    pub(crate) fn add(&self, job: &Job, made: &[(&Path, &Path)]) -> io::Result<()> {
-        let input = Stamp::of(formats::member(&job.input).0);
+    /// Records a file that is about to get its name, or those of its parts. `inputs`: what it was made of, as that was
+    /// before it was read; `made`: the names, and where the files are until then.
+    pub(crate) fn add(
+        &self,
+        job: &Job,
+        inputs: Option<&[Stamp]>,
+        made: &[(&Path, &Path)],
+    ) -> io::Result<()> {
         let now: Vec<PathBuf> = made.iter().map(|(_, now)| now.to_path_buf()).collect();
-        let (Some(is), Some(of)) = (Stamp::of_all(&now), input) else {
+        let (Some(is), Some([of, further @ ..])) = (Stamp::of_all(&now), inputs) else {
             return Ok(());
         };
         let parts = made.iter().filter(|_| job.parts);
@@ -202,7 +227,8 @@ impl OutputRecord {
             out: self.name(&job.out),
             is,
             options: self.hash(job),
-            of,
+            of: *of,
+            further: further.to_vec(),
             parts: parts.map(|(out, _)| self.name(out)).collect(),
         };
         let mut text = serde_json::to_vec(&line)?;
@@ -224,12 +250,13 @@ impl OutputRecord {
         }
     }
 
-    /// Hash of all that the file depends on, apart from its input, in hexadecimal.
+    /// Hash of all that the file depends on, apart from what its inputs hold, in hexadecimal.
     fn hash(&self, job: &Job) -> String {
-        format!(
-            "{:016x}",
-            hash(&format!("{} {}", self.options, job.placement))
-        )
+        // A folder may move with its outputs, so that only names are compared.
+        let inputs = std::iter::once(&job.input).chain(&job.further);
+        let names: Vec<_> = inputs.map(|input| input.file_name()).collect();
+        let text = format!("{} {} {names:?}", self.options, job.placement);
+        format!("{:016x}", hash(&text))
     }
 
     fn name(&self, out: &Path) -> String {
@@ -256,6 +283,7 @@ mod tests {
             input: folder.path().join("a.swc"),
             out: folder.path().join("a.ply"),
             placement: String::new(),
+            further: Vec::new(),
             beside: None,
             parts: false,
         };
@@ -264,7 +292,9 @@ mod tests {
         assert_eq!(record.state_of(&job), OutputState::Missing);
         fs::write(&job.out, "mesh").expect("written");
         assert_eq!(record.state_of(&job), OutputState::Newer);
-        record.add(&job, &[(&job.out, &job.out)]).expect("recorded");
+        let inputs = Stamp::of_inputs(&job).expect("there");
+        let made = [(&*job.out, &*job.out)];
+        record.add(&job, Some(&inputs), &made).expect("recorded");
         // An incomplete line, and one of a run that was killed, do no harm.
         let mut file = OpenOptions::new();
         let mut file = file
@@ -288,6 +318,7 @@ mod tests {
             input: at("a.swc"),
             out: at("a.obj"),
             placement: String::new(),
+            further: Vec::new(),
             beside: Some(at("a.mtl")),
             parts: true,
         };
@@ -298,7 +329,8 @@ mod tests {
         assert_eq!(record.state_of(&job), OutputState::Missing);
         let parts = ["a_soma.obj", "a_axon.obj"].map(at);
         let made = parts.each_ref().map(|part| (&**part, &**part));
-        record.add(&job, &made).expect("recorded");
+        let inputs = Stamp::of_inputs(&job).expect("there");
+        record.add(&job, Some(&inputs), &made).expect("recorded");
         record.read();
         assert_eq!(record.state_of(&job), OutputState::Right);
         fs::remove_file(at("a.mtl")).expect("removed");

@@ -22,6 +22,8 @@ pub(crate) struct Job {
     pub(crate) out: PathBuf,
     /// The instance of a circuit with its placement, as text; empty for a file.
     pub(crate) placement: String,
+    /// Files that it is made of besides `input`.
+    pub(crate) further: Vec<PathBuf>,
     /// A file that is written beside it, without which it is not complete.
     pub(crate) beside: Option<PathBuf>,
     /// Whether `out` is not itself written, but files named after it, one for each type.
@@ -70,6 +72,7 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
             input: path.clone(),
             out: target,
             placement: String::new(),
+            further: Vec::new(),
             beside: None,
             parts: false,
         });

@@ -1,6 +1,7 @@
 //! Meshes of tracings, and their files.
 
 mod files;
+mod number;
 mod purposes;
 mod soma_meshes;
 

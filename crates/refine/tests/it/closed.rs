@@ -196,3 +196,32 @@ fn levels_1_and_64_side_by_side_are_closed() {
         "1 and 64",
     );
 }
+
+/// A million patches of level 64 have more vertices than 32 bits count.
+#[neurotess_testing::test]
+fn vertices_are_counted_beyond_32_bits() {
+    let twig = Twig {
+        parent: 0,
+        seed: 1,
+        points: 8,
+        step: 3.0,
+        wild: 0.5,
+        radius: 1.0,
+    };
+    let generated = generate(
+        &grow(&vec![twig; 4], Some(5.0)),
+        &GenerateOptions::default(),
+    );
+    let mut mesh = generated.expect("meshed").mesh;
+    let count = |mesh: &neurotess_mesh::CoarseMesh| {
+        let options = RefineOptions::default();
+        Refinement::new(mesh, LodCriterion::Homogeneous(64), &options).vertex_count()
+    };
+    let (once, patches) = (count(&mesh), mesh.patches.clone());
+    let times = 1_500_000 / patches.len();
+    mesh.patches = patches.repeat(times);
+    // Each patch has 63 × 63 of its own, and shares its edges with the others.
+    let expected = once + (times - 1) * patches.len() * 63 * 63;
+    assert!(expected > u32::MAX as usize);
+    assert_eq!(count(&mesh), expected);
+}

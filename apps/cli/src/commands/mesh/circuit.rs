@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use itertools::Itertools;
 use neurotess::circuit::{Circuit, Instance};
 
 use super::args::MeshArgs;
@@ -76,7 +77,7 @@ pub(super) fn run(args: &MeshArgs, path: &Path, reporter: &Reporter) -> anyhow::
     if let Some(shard) = args.shard {
         instance_jobs = shard.of(instance_jobs);
     }
-    let record = OutputRecord::open(folder, &options.fingerprint());
+    let record = OutputRecord::open(folder, &options.fingerprint()?);
     let run = MeshRun {
         options: &options,
         reporter,
@@ -111,7 +112,8 @@ fn plan(
             job: Job {
                 input,
                 out,
-                placement: format!("{instance:?}"),
+                placement: placement(instance),
+                further: Vec::new(),
                 beside: None,
                 parts: false,
             },
@@ -121,7 +123,32 @@ fn plan(
             },
         }
     };
-    instances.iter().zip(outs).map(job).collect()
+    instances.iter().zip_eq(outs).map(job).collect()
+}
+
+/// Where a cell is, as text that is the same for the same place only.
+fn placement(instance: &Instance) -> String {
+    let Instance {
+        node: _,
+        id: _,
+        template: _,
+        position,
+        rotation,
+        scale,
+        recentered,
+        group: _,
+    } = *instance;
+    let numbers = [
+        position.to_array().as_slice(),
+        &rotation.to_array(),
+        &[scale],
+    ]
+    .concat();
+    let bits: Vec<String> = numbers
+        .iter()
+        .map(|n| format!("{:x}", n.to_bits()))
+        .collect();
+    format!("{} {recentered}", bits.join(" "))
 }
 
 /// Meshes each morphology once and writes it for all of its cells. Entries are in the order of the
@@ -182,7 +209,7 @@ fn mesh_all(
     })?;
     drop(progress);
     let mut entries: Vec<(usize, Entry)> = Vec::new();
-    for ((_, cells), result) in groups.iter().zip(results) {
+    for ((_, cells), result) in groups.iter().zip_eq(results) {
         match result {
             Ok(done) => entries.extend(done),
             Err(panic) => entries.extend(cells.iter().map(|(index, instance_job)| {

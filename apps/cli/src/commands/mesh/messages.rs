@@ -20,7 +20,7 @@ pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
     };
     note(
         OutputState::OtherOptions,
-        "made with other options: made again",
+        "made with other options or by another build: made again",
     );
     note(
         OutputState::Incomplete,

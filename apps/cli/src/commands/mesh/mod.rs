@@ -22,6 +22,7 @@ mod warning;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use itertools::Itertools;
 use neurotess::mesh::Format;
 
 use crate::io::circuits::partition;
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &MeshArgs, reporter: &Reporter) -> anyhow::Result<()> {
         jobs = shard.of(jobs);
     }
     inputs.tell(reporter);
-    let record = OutputRecord::open(&record_folder(out, &inputs), &options.fingerprint());
+    let record = OutputRecord::open(&record_folder(out, &inputs), &options.fingerprint()?);
     let run = MeshRun {
         options: &options,
         reporter,
@@ -136,7 +137,7 @@ fn mesh_all(jobs: &[Job], record: &OutputRecord, run: &MeshRun<'_>) -> anyhow::R
         entry
     })?;
     drop(progress);
-    let named = jobs.iter().zip(results);
+    let named = jobs.iter().zip_eq(results);
     let entries = named.map(|(job, result)| {
         result.unwrap_or_else(|panic| {
             let entry = run.panicked(job, &panic);

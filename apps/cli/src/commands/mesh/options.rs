@@ -7,7 +7,7 @@ use neurotess::mesh::{Format, Unit};
 use neurotess::recipe::{
     self, Crossings, FileOptions, Levels, NamedOptions, OptionValue, OptionsError, Radii, Spelling,
 };
-use neurotess::refine::{Caps, LodCriterion, Path};
+use neurotess::refine::{Caps, Path};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SomaKeepArg, SphereArg};
 use crate::io::inputs::Inputs;
@@ -31,18 +31,9 @@ pub(crate) struct MeshOptions {
 }
 
 impl MeshOptions {
-    /// All options that a file depends on, as text. Records of earlier versions contain its hash,
-    /// so the same options must always give the same text.
-    pub(crate) fn fingerprint(&self) -> String {
-        let Self {
-            recipe,
-            files,
-            strict: _,
-            table: _,
-            areas: _,
-            force: _,
-            measure: _,
-        } = self;
+    /// All that a file depends on besides its inputs, as JSON: the same options give the same text in every build that
+    /// makes the same meshes.
+    pub(crate) fn fingerprint(&self) -> anyhow::Result<String> {
         let FileOptions {
             format,
             unit,
@@ -50,52 +41,24 @@ impl MeshOptions {
             materials,
             parts,
             ..
-        } = files;
-        let (generate, refine) = (recipe.generate_options(), &recipe.refine);
-        let lod = match recipe.levels {
-            Levels::Coarse => "Coarse".to_owned(),
-            Levels::Criterion(LodCriterion::Homogeneous(level)) => format!("Level({level})"),
-            Levels::Criterion(other) => format!("{other:?}"),
-            Levels::Edges(rule) => format!("{rule:?}"),
-            other => format!("{other:?}"),
-        };
-        // What earlier versions did not have is left out where it has its default.
-        let generate = format!("{generate:?}");
-        let generate = generate
-            .replace(", soma_keep: Volume", "")
-            .replace(", soma_shape: None", "")
-            .replace(", polygons: None", "")
-            .replace(", unknown_radius: None", "")
-            .replace(", least_radius: 0.0", "")
-            .replace(", crossings: Keep", "")
-            .replace(", smooth: None", "");
-        let soma_mesh = recipe.soma_mesh.as_ref();
-        let soma_mesh = soma_mesh.map_or(String::new(), |file| format!(" {}", file.display()));
-        let unit = match unit {
-            Unit::Micrometer => "",
-            Unit::Meter => " Meter",
-        };
-        let merged = if recipe.merges() { " merged" } else { "" };
-        let simulation = if recipe.is_simulation() {
-            " simulation"
-        } else {
-            ""
-        };
-        let walls = if *walls { " walls" } else { "" };
-        let materials = match (format, materials) {
-            (Format::Obj, true) => " materials",
-            (Format::Glb, true) => " materials",
-            _ => "",
-        };
-        let parts = if *parts { " parts" } else { "" };
-        format!(
-            "{lod} {generate} {refine:?} {format:?}{unit}{merged}{simulation}{walls}{materials}{parts}{soma_mesh}"
-        )
+        } = self.files;
+        let text = serde_json::json!({
+            "meshes": recipe::MESHES,
+            // Those that have their defaults are not named.
+            "options": serde_json::to_value(&self.recipe)?,
+            "format": format.to_string(),
+            "meters": unit == Unit::Meter,
+            "walls": walls,
+            "materials": materials,
+            "parts": parts,
+        });
+        Ok(text.to_string())
     }
 
     /// Tells a job which files it has.
     pub(super) fn complete(&self, job: &mut Job) {
         job.beside = self.files.materials_of(&job.out);
+        job.further = self.recipe.soma_mesh.iter().cloned().collect();
         job.parts = self.files.parts;
     }
 
@@ -242,15 +205,16 @@ mod tests {
     use std::collections::BTreeMap;
 
     use clap::Parser;
-    use neurotess::generate::{Equal, Polygons, Sides, Smooth};
+    use neurotess::generate::Smooth;
     use neurotess::morphology::NeuriteKind;
+    use neurotess::refine::LodCriterion;
 
     use super::*;
 
-    /// Texts that earlier versions hashed into records, so that their outputs are recognized.
+    /// What makes other files has another text; what does not, the same.
     #[test]
-    fn fingerprints_stay_for_ever() {
-        let mut options = MeshOptions {
+    fn fingerprints_tell_files_apart() {
+        let usual = MeshOptions {
             strict: false,
             recipe: recipe::MeshOptions::default(),
             files: FileOptions::new(Format::Ply),
@@ -259,47 +223,44 @@ mod tests {
             force: false,
             measure: false,
         };
+        let text = |change: &dyn Fn(&mut MeshOptions)| {
+            let mut options = usual.clone();
+            change(&mut options);
+            options.fingerprint().expect("a text")
+        };
+        let same = text(&|_| {});
         assert_eq!(
-            options.fingerprint(),
-            "Level(4) GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, radius_factor: 1.0, sphere: Cube, \
-             sphere_level: None, rings: {}, kinds: None } \
-             RefineOptions { path: Hermite, caps: Round, quads: false } Ply"
+            text(&|o| (o.strict, o.force, o.measure) = (true, true, true)),
+            same
         );
-        options.recipe.levels = Levels::Coarse;
-        options.files.format = Format::Glb;
-        options.recipe.generate.rings = BTreeMap::from([(1, 0.5)]);
-        options.recipe.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect());
-        assert_eq!(
-            options.fingerprint(),
-            "Coarse GenerateOptions { soma: Fem, poisson: 0.3, soma_scale: 1.0, radius_factor: 1.0, sphere: Cube, \
-             sphere_level: None, rings: {1: 0.5}, kinds: Some([NeuriteKind(2)]) } \
-             RefineOptions { path: Hermite, caps: Round, quads: false } Glb"
-        );
-        options.recipe.levels = Levels::Criterion(LodCriterion::MaxError(0.05));
-        options.files.unit = Unit::Meter;
-        let text = options.fingerprint();
-        assert!(text.ends_with("quads: false } Glb Meter"), "{text}");
-        assert!(text.starts_with("MaxError(0.05) "), "{text}");
-        options.recipe.generate.polygons = Some(Polygons {
-            sides: Sides::Level(2),
-            equal: Equal::Area,
-        });
-        let text = options.fingerprint();
-        assert!(
-            text.contains(", polygons: Some(Polygons { sides: Level(2), equal: Area }), "),
-            "{text}"
-        );
-        options.recipe.generate.smooth = Smooth::Length(2.0);
-        let text = options.fingerprint();
-        assert!(text.contains(", smooth: Length(2.0) } "), "{text}");
-        options.recipe.generate.unknown_radius = Some(0.4);
-        options.recipe.generate.least_radius = 0.1;
-        let text = options.fingerprint();
-        assert!(
-            text.contains(", unknown_radius: Some(0.4), least_radius: 0.1 } "),
-            "{text}"
-        );
+        let others: [&dyn Fn(&mut MeshOptions); 18] = [
+            &|o| o.recipe.levels = Levels::Coarse,
+            &|o| o.recipe.levels = Levels::Criterion(LodCriterion::Homogeneous(5)),
+            &|o| o.recipe.levels = Levels::Criterion(LodCriterion::MaxError(0.05)),
+            &|o| o.recipe = recipe::MeshOptions::simulation(),
+            &|o| o.recipe.crossings = Crossings::Merge,
+            &|o| o.recipe.crossings = Crossings::Separate,
+            &|o| o.recipe.refine.quads = true,
+            &|o| o.recipe.refine.caps = Caps::Flat,
+            &|o| o.recipe.generate.poisson = 0.31,
+            &|o| o.recipe.generate.soma_keep = SomaKeep::Area,
+            &|o| o.recipe.generate.rings = BTreeMap::from([(1, 0.5)]),
+            &|o| o.recipe.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect()),
+            &|o| o.recipe.generate.smooth = Smooth::Length(2.0),
+            &|o| o.recipe.generate.unknown_radius = Some(0.4),
+            &|o| o.recipe.soma_mesh = Some("soma.ply".into()),
+            &|o| o.files.format = Format::Msh2,
+            &|o| o.files.unit = Unit::Meter,
+            &|o| o.files.walls = true,
+        ];
+        let mut all: Vec<String> = others.into_iter().map(text).collect();
+        all.push(text(&|o| o.files.materials = true));
+        all.push(text(&|o| o.files.parts = true));
+        all.push(same);
+        let distinct: std::collections::BTreeSet<_> = all.iter().collect();
+        assert_eq!(distinct.len(), all.len(), "{all:#?}");
     }
+
     /// The options alone, without the program around them.
     #[derive(Debug, Parser)]
     struct Options {

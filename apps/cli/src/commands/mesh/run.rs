@@ -7,7 +7,7 @@ use super::options::MeshOptions;
 use crate::io::claims::{Claim, Claimed, claim};
 use crate::io::morphologies::readable;
 use crate::io::output::OutputError;
-use crate::io::record::{self, OutputRecord};
+use crate::io::record::{self, OutputRecord, Stamp};
 use crate::io::targets::Job;
 use crate::report::{Failed, Failure, Log, Reporter, bug};
 
@@ -71,6 +71,7 @@ impl MeshRun<'_> {
         let file = job.input.display();
         let failed = |e: OutputError| Failure(format!("{file}: {e}"));
         let resume = self.resume.then_some(record);
+        let inputs = Stamp::of_inputs(job);
         let claimed = readable(&job.input)
             .and_then(|()| claim(job, self.options.force, resume, self.reporter).map_err(failed));
         let result = match claimed {
@@ -82,7 +83,7 @@ impl MeshRun<'_> {
             Ok(Made { report, files }) => {
                 let cell = Box::new(report);
                 if self.records
-                    && let Err(e) = record.add(job, &files.meshes(&job.out))
+                    && let Err(e) = record.add(job, inputs.as_deref(), &files.meshes(&job.out))
                 {
                     let name = record::NAME;
                     self.reporter.warning(&format!(

@@ -27,7 +27,7 @@ fn outputs_of_other_options_are_made_again() {
         .exits(0);
     assert!(
         run.stderr()
-            .contains("2 outputs made with other options: made again")
+            .contains("2 outputs made with other options or by another build: made again")
     );
     let finer = run.json();
     assert!(
@@ -143,4 +143,58 @@ fn a_log_that_lacks_lines_gets_them() {
     work.run("mesh cells -o out --level 1 --log log.jsonl --resume")
         .exits(0);
     assert_eq!(log().len(), 2);
+}
+
+/// A soma's surface is an input as the tracing is.
+#[neurotess_testing::test]
+fn outputs_of_another_soma_mesh_are_made_again() {
+    let work = Work::new();
+    work.file("a.swc", SMALL);
+    let octahedron = |r: f64| {
+        let corners = [
+            [r, 0.0, 0.0],
+            [-r, 0.0, 0.0],
+            [0.0, r, 0.0],
+            [0.0, -r, 0.0],
+            [0.0, 0.0, r],
+            [0.0, 0.0, -r],
+        ];
+        let corners = corners.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+        let faces = "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+        corners + faces
+    };
+    work.file("soma.obj", octahedron(6.0));
+    let mesh = "mesh a.swc -o a.ply --level 1 --soma-mesh soma.obj --resume --json";
+    let volume = |json: &Value| json[0]["soma_volume"].as_f64();
+    let first = work.run(mesh).exits(0).json();
+    assert_eq!(work.run(mesh).exits(0).json()[0]["skipped"], true);
+    work.file("soma.obj", octahedron(6.5));
+    let run = work.run(mesh).exits(0);
+    assert!(
+        run.stderr().contains("made of another input"),
+        "{}",
+        run.stderr()
+    );
+    assert!(volume(&run.json()) > volume(&first), "{first}");
+    // A tracing of another name is another input, even if nothing else tells them apart.
+    let moved = work.path("b.swc");
+    fs::rename(work.path("a.swc"), moved).expect("moved");
+    let run = work.run(&mesh.replace("a.swc", "b.swc")).exits(0);
+    assert!(run.json()[0]["vertices"].is_u64(), "{}", run.stdout());
+}
+
+/// Records of builds that made other meshes have another hash.
+#[neurotess_testing::test]
+fn outputs_of_an_earlier_build_are_made_again() {
+    let work = Work::new();
+    work.file("cells/a.swc", SMALL);
+    work.run("mesh cells -o out --level 1").exits(0);
+    let record = work.text("out/.neurotess-made");
+    let mut line: Value = serde_json::from_str(record.trim()).expect("JSON");
+    line["options"] = "0123456789abcdef".into();
+    fs::write(work.path("out/.neurotess-made"), format!("{line}\n")).expect("written");
+    let run = work
+        .run("mesh cells -o out --level 1 --resume --json")
+        .exits(0);
+    assert!(run.json()[0]["vertices"].is_u64(), "{}", run.stdout());
 }
