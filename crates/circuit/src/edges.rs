@@ -172,7 +172,7 @@ impl Edges {
             return Ok(Vec::new());
         };
         let [section, share] = [section, share].map(|column| format!("{group}/{column}"));
-        let (sections, shares) = (store.naturals(&section)?, store.reals(&share)?);
+        let (sections, shares) = (store.naturals(&section)?, store.shares(&share)?);
         self.check_rows(&store, &section, sections.len())?;
         self.check_rows(&store, &share, shares.len())?;
         let compartment = |(&section, &share): (&u64, &f64)| Compartment {

@@ -179,6 +179,16 @@ pub enum Fault {
         /// How many there are.
         limit: u64,
     },
+    /// A number that is none of those that can stand there.
+    #[error("row {row} is {value} instead of {expected}: correct it, or export the file again")]
+    Row {
+        /// The row, from 0 on.
+        row: u64,
+        /// What stands there.
+        value: String,
+        /// What should.
+        expected: &'static str,
+    },
     /// NaN or infinite numbers where a place should be.
     #[error("row {row} is {value}, as are {count} in all: these cells are left out, correct them")]
     NotFinite {

@@ -8,6 +8,7 @@ use std::path::Path;
 use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
 
 use neurotess_formats::capacity::{self, Excess};
+use neurotess_formats::indices::{self, IndexError};
 use neurotess_formats::regular;
 
 use crate::{CircuitError, Fault};
@@ -175,15 +176,38 @@ impl Store {
     }
 
     pub(crate) fn reals(&self, path: &str) -> Result<Vec<f64>, CircuitError> {
-        self.read(path, Dataset::read_f64)
+        self.read(path, |dataset| dataset.read_f64().map_err(|e| hdf5(&e)))
     }
 
+    /// Whole numbers, which may be negative.
     pub(crate) fn wholes(&self, path: &str) -> Result<Vec<i64>, CircuitError> {
-        self.read(path, Dataset::read_i64)
+        self.read(path, |dataset| {
+            indices::wholes(dataset, None).map_err(|e| index(e, 0))
+        })
     }
 
+    /// Indices: whole numbers of 0 or more.
     pub(crate) fn naturals(&self, path: &str) -> Result<Vec<u64>, CircuitError> {
-        self.read(path, Dataset::read_u64)
+        self.read(path, |dataset| {
+            indices::naturals(dataset, None).map_err(|e| index(e, 0))
+        })
+    }
+
+    /// Shares of a length, from 0 to 1.
+    pub(crate) fn shares(&self, path: &str) -> Result<Vec<f64>, CircuitError> {
+        let values = self.reals(path)?;
+        let outside = |value: &f64| !(0.0..=1.0).contains(value);
+        match values.iter().position(outside) {
+            None => Ok(values),
+            Some(row) => Err(self.fault(
+                path,
+                Fault::Row {
+                    row: row as u64,
+                    value: values[row].to_string(),
+                    expected: "a share from 0 to 1",
+                },
+            )),
+        }
     }
 
     /// A table of real numbers, row by row.
@@ -217,10 +241,10 @@ impl Store {
     fn read<T>(
         &self,
         path: &str,
-        read: impl FnOnce(&Dataset) -> Result<Vec<T>, hdf5_pure::Error>,
+        read: impl FnOnce(&Dataset) -> Result<Vec<T>, Fault>,
     ) -> Result<Vec<T>, CircuitError> {
         let rows = self.rows(path)?;
-        let values = read(&self.dataset(path)?).map_err(|e| self.fault(path, hdf5(&e)))?;
+        let values = read(&self.dataset(path)?).map_err(|fault| self.fault(path, fault))?;
         if values.len() as u64 != rows {
             let (found, expected) = (vec![values.len() as u64], format!("[{rows}]"));
             return Err(self.fault(path, Fault::Shape { found, expected }));
@@ -235,19 +259,33 @@ impl Store {
         from: u64,
         count: u64,
     ) -> Result<Vec<u64>, CircuitError> {
-        let rows = self.dataset(path)?.read_u64_rows(from, count);
-        rows.map_err(|e| self.fault(path, hdf5(&e)))
+        let rows = indices::naturals(&self.dataset(path)?, Some((from, count)));
+        rows.map_err(|e| self.fault(path, index(e, from)))
     }
 
-    /// Some rows of whole numbers.
+    /// Some rows of a table of whole numbers with as many columns.
     pub(crate) fn wholes_of(
         &self,
         path: &str,
-        from: u64,
-        count: u64,
+        (from, count): (u64, u64),
+        width: usize,
     ) -> Result<Vec<i64>, CircuitError> {
-        let rows = self.dataset(path)?.read_i64_rows(from, count);
-        rows.map_err(|e| self.fault(path, hdf5(&e)))
+        let rows = indices::wholes(&self.dataset(path)?, Some((from, count)));
+        rows.map_err(|e| {
+            let e = match e {
+                IndexError::Number {
+                    place,
+                    value,
+                    expected,
+                } => IndexError::Number {
+                    place: place / width.max(1) as u64,
+                    value,
+                    expected,
+                },
+                other => other,
+            };
+            self.fault(path, index(e, from))
+        })
     }
 
     /// Some rows of real numbers.
@@ -303,9 +341,12 @@ impl Store {
     }
 
     fn strings(&self, path: &str) -> Result<Vec<String>, CircuitError> {
-        self.read(path, |dataset| match dataset.datatype()? {
-            Datatype::VariableLength { .. } => dataset.read_vlen_strings(self.payload()),
-            _ => dataset.read_string(),
+        self.read(path, |dataset| {
+            let texts = dataset.datatype().and_then(|datatype| match datatype {
+                Datatype::VariableLength { .. } => dataset.read_vlen_strings(self.payload()),
+                _ => dataset.read_string(),
+            });
+            texts.map_err(|e| hdf5(&e))
         })
     }
 
@@ -342,6 +383,22 @@ impl Store {
         let of_dataset = self.file.dataset(path).and_then(|d| d.attrs());
         let all = of_dataset.or_else(|_| self.file.group(path).and_then(|g| g.attrs()));
         all.ok()?.get(name)?.as_str().map(str::to_owned)
+    }
+}
+
+/// The fault of an index; `from`: the row of the first that was asked for.
+fn index(error: IndexError, from: u64) -> Fault {
+    match error {
+        IndexError::Hdf5(e) => hdf5(&e),
+        IndexError::Number {
+            place,
+            value,
+            expected,
+        } => Fault::Row {
+            row: from + place,
+            value,
+            expected,
+        },
     }
 }
 

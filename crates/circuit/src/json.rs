@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use neurotess_formats::read_regular;
+use neurotess_formats::{indices, read_regular};
 use serde_json::Value;
 
 use crate::{CircuitError, Fault};
@@ -76,6 +76,18 @@ impl<'a> Json<'a> {
 
     pub(crate) fn real(&self) -> Result<f64, CircuitError> {
         self.value.as_f64().ok_or_else(|| self.wrong("a number"))
+    }
+
+    /// An index, however it is written: 7 or 7.0.
+    pub(crate) fn natural(&self) -> Result<u64, CircuitError> {
+        let whole = |v: f64| v.fract() == 0.0 && (0.0..=9e15).contains(&v);
+        let real = || self.value.as_f64().filter(|&v| whole(v)).map(|v| v as u64);
+        self.value.as_u64().or_else(real).ok_or_else(|| {
+            self.fault(Fault::Type {
+                found: self.value.to_string(),
+                expected: indices::NATURAL,
+            })
+        })
     }
 
     /// Compartments of a list.

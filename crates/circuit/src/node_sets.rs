@@ -81,8 +81,12 @@ impl NodeSets {
                 Choice::Union(names.collect::<Result<_, _>>()?)
             } else {
                 let rules = json.entries()?.into_iter();
-                let rules =
-                    rules.map(|(attribute, rule)| Ok((attribute.into(), Rule::read(&rule)?)));
+                let rules = rules.map(|(attribute, rule)| {
+                    if attribute == "node_id" {
+                        check_ids(&rule)?;
+                    }
+                    Ok((attribute.into(), Rule::read(&rule)?))
+                });
                 Choice::Rules(rules.collect::<Result<_, CircuitError>>()?)
             };
             let file = json.file.into();
@@ -174,6 +178,19 @@ impl NodeSets {
         done.insert(name);
         Ok(())
     }
+}
+
+/// Ids are whole numbers of 0 or more.
+fn check_ids(rule: &Json) -> Result<(), CircuitError> {
+    let items = match rule.value {
+        Value::Array(_) => rule.items()?,
+        _ => vec![rule.clone()],
+    };
+    let wrong = |item: &&Json| item.value.is_number() && item.natural().is_err();
+    items
+        .iter()
+        .find(wrong)
+        .map_or(Ok(()), |item| item.natural().map(drop))
 }
 
 /// What a rule is about.

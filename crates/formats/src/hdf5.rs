@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use crate::indices::{self, IndexError};
 use crate::{Fault, capacity};
 
 /// A file, open for reading.
@@ -122,19 +123,33 @@ impl Store {
 
     /// A dataset of real numbers. `columns`: how many there must be.
     pub(crate) fn reals(&self, path: &str, columns: usize) -> Result<Table<f64>, Fault> {
-        self.table(path, columns, hdf5_pure::Dataset::read_f64)
+        let read = |dataset: &hdf5_pure::Dataset| dataset.read_f64().map_err(|e| hdf5(path, &e));
+        self.table(path, columns, read)
     }
 
     /// A dataset of whole numbers. `columns`: how many there must be.
     pub(crate) fn wholes(&self, path: &str, columns: usize) -> Result<Table<i64>, Fault> {
-        self.table(path, columns, hdf5_pure::Dataset::read_i64)
+        let read = |dataset: &hdf5_pure::Dataset| {
+            indices::wholes(dataset, None).map_err(|e| match e {
+                IndexError::Hdf5(e) => hdf5(path, &e),
+                IndexError::Number { place, value, .. } => Fault::Row {
+                    dataset: path.into(),
+                    row: place / columns.max(1) as u64,
+                    fault: Box::new(Fault::NotWhole {
+                        column: "a number",
+                        text: value,
+                    }),
+                },
+            })
+        };
+        self.table(path, columns, read)
     }
 
     fn table<T>(
         &self,
         path: &str,
         columns: usize,
-        read: impl FnOnce(&hdf5_pure::Dataset) -> Result<Vec<T>, hdf5_pure::Error>,
+        read: impl FnOnce(&hdf5_pure::Dataset) -> Result<Vec<T>, Fault>,
     ) -> Result<Table<T>, Fault> {
         let dataset = self.dataset(path).map_err(|e| hdf5(path, &e))?;
         let shape = dataset.shape().map_err(|e| hdf5(path, &e))?;
@@ -157,7 +172,7 @@ impl Store {
                 possible,
             });
         }
-        let values = read(&dataset).map_err(|e| hdf5(path, &e))?;
+        let values = read(&dataset)?;
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
         if rows.checked_mul(columns) != Some(values.len()) {
             return Err(Fault::Shape {

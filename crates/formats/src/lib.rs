@@ -37,6 +37,8 @@ mod format;
 pub mod h5;
 #[cfg(feature = "h5")]
 mod hdf5;
+#[cfg(feature = "h5")]
+pub mod indices;
 #[cfg(feature = "json")]
 pub mod json;
 #[cfg(feature = "xml")]

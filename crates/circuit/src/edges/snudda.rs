@@ -174,7 +174,7 @@ impl Table {
             }
         };
         for from in (0..edges.count).step_by(BLOCK as usize) {
-            let block = store.wholes_of(&path, from, BLOCK.min(edges.count - from))?;
+            let block = store.wholes_of(&path, (from, BLOCK.min(edges.count - from)), width)?;
             for (row, cells) in (from..).zip(block.chunks_exact(width)) {
                 visit(row, cells).map_err(|fault| store.fault(&path, fault))?;
             }

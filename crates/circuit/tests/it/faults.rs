@@ -454,6 +454,212 @@ fn reports_are_refused_with_file_and_dataset() {
     assert!(RecordingFile::open(folder.path().join("gone.h5")).is_err());
 }
 
+/// What is wrong with a column of nodes, stored as it is given.
+fn nodes_refused(set: impl Fn(&mut hdf5_pure::GroupBuilder)) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut file = FileBuilder::new();
+    let mut nodes = file.create_group("nodes");
+    let mut population = nodes.create_group("p");
+    population
+        .create_dataset("node_type_id")
+        .with_i64_data(&[-1; 2]);
+    set(&mut population);
+    let mut group = population.create_group("0");
+    for axis in ["x", "y", "z"] {
+        group.create_dataset(axis).with_f64_data(&[0.0, 1.0]);
+    }
+    population.add_group(group.finish());
+    nodes.add_group(population.finish());
+    file.add_group(nodes.finish());
+    let bytes = file.finish().expect("bytes");
+    fs::write(folder.path().join("nodes.h5"), bytes).expect("written");
+    let path = folder.path().join("circuit_config.json");
+    fs::write(&path, CONFIG).expect("written");
+    match Circuit::open(&path) {
+        Ok(circuit) => circuit.failures[0].to_string(),
+        Err(e) => e.to_string(),
+    }
+}
+
+/// An index is never another one than the file has.
+#[neurotess_testing::test]
+fn negative_and_fractional_indices_are_errors_of_their_row() {
+    let natural = "a whole number of 0 or more";
+    for (name, text) in [
+        ("node_id", natural),
+        ("node_group_id", natural),
+        ("node_group_index", natural),
+    ] {
+        let is_index = name == "node_group_index";
+        let negative = nodes_refused(|p| {
+            if is_index {
+                p.create_dataset("node_group_id").with_u64_data(&[0, 0]);
+            }
+            p.create_dataset(name).with_i32_data(&[0, -1]);
+        });
+        let told = format!("nodes.h5: 'nodes/p/{name}': row 1 is -1 instead of {text}");
+        assert!(negative.contains(&told), "{negative}");
+        let fraction = nodes_refused(|p| {
+            if is_index {
+                p.create_dataset("node_group_id").with_u64_data(&[0, 0]);
+            }
+            p.create_dataset(name).with_f64_data(&[1.9, 0.0]);
+        });
+        let told = format!("'nodes/p/{name}': row 0 is 1.9 instead of {text}");
+        assert!(fraction.contains(&told), "{fraction}");
+    }
+    // What is whole is an index, however it is stored.
+    let other = nodes_refused(|p| {
+        p.create_dataset("node_id").with_f32_data(&[3.0, 7.0]);
+        p.create_dataset("node_group_id").with_i8_data(&[0, 0]);
+        p.create_dataset("node_group_index")
+            .with_f64_data(&[0.0, 0.5]);
+    });
+    assert!(
+        other.contains("'nodes/p/node_group_index': row 1 is 0.5"),
+        "{other}"
+    );
+}
+
+#[neurotess_testing::test]
+fn negative_and_fractional_indices_of_reports_spikes_and_edges_are_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |file: FileBuilder| {
+        let path = folder.path().join("a.h5");
+        fs::write(&path, file.finish().expect("bytes")).expect("written");
+        path
+    };
+    let report = |column: &str| {
+        let mut file = FileBuilder::new();
+        let mut mapping = file.create_group("mapping");
+        for (name, values) in [
+            ("node_ids", [0.0, 1.0]),
+            ("index_pointers", [0.0, 1.0]),
+            ("element_ids", [0.0, 0.0]),
+        ] {
+            let wrong = [values[0], -2.0];
+            let values = if name == column { &wrong } else { &values };
+            mapping.create_dataset(name).with_f64_data(values);
+        }
+        mapping
+            .create_dataset("time")
+            .with_f64_data(&[0.0, 1.0, 1.0]);
+        file.create_dataset("data")
+            .with_f32_data(&[1.0, 2.0])
+            .with_shape(&[1, 2]);
+        file.add_group(mapping.finish());
+        let opened = Report::open(write(file))?;
+        opened.populations[0].compartments(1).map(drop)
+    };
+    for column in ["node_ids", "index_pointers", "element_ids"] {
+        let error = report(column).expect_err(column).to_string();
+        assert!(
+            error.contains(&format!("a.h5: 'mapping/{column}': row 1 is -2 instead")),
+            "{error}"
+        );
+    }
+    report("none").expect("a report");
+    let mut file = FileBuilder::new();
+    let mut spikes = file.create_group("spikes");
+    spikes
+        .create_dataset("timestamps")
+        .with_f64_data(&[0.5, 1.0]);
+    spikes
+        .create_dataset("node_ids")
+        .with_f64_data(&[0.0, 0.25]);
+    file.add_group(spikes.finish());
+    let error = Spikes::open(write(file))
+        .expect_err("a fraction")
+        .to_string();
+    assert!(
+        error.contains("'spikes/node_ids': row 1 is 0.25 instead of"),
+        "{error}"
+    );
+    let edges = |column: &str, wrong: f64| {
+        let mut file = FileBuilder::new();
+        let mut edges = file.create_group("edges");
+        let mut population = edges.create_group("e");
+        for name in ["source_node_id", "target_node_id"] {
+            let values = [0.0, if name == column { wrong } else { 1.0 }];
+            population.create_dataset(name).with_f64_data(&values);
+        }
+        let mut group = population.create_group("0");
+        for name in ["afferent_section_id", "afferent_section_pos"] {
+            let values = [0.0, if name == column { wrong } else { 1.0 }];
+            group.create_dataset(name).with_f64_data(&values);
+        }
+        population.add_group(group.finish());
+        edges.add_group(population.finish());
+        file.add_group(edges.finish());
+        let edges = neurotess_circuit::Edges {
+            name: "e".into(),
+            file: write(file),
+            source: "p".into(),
+            target: "p".into(),
+            count: 2,
+        };
+        edges.synapses()?;
+        edges
+            .shares_on(neurotess_circuit::SynapseSide::Afferent)
+            .map(drop)
+    };
+    edges("none", 0.0).expect("synapses");
+    for (column, wrong) in [
+        ("source_node_id", -1.0),
+        ("target_node_id", 1.5),
+        ("0/afferent_section_id", -1.0),
+        ("0/afferent_section_pos", -0.5),
+        ("0/afferent_section_pos", 1.7),
+        ("0/afferent_section_pos", f64::NAN),
+    ] {
+        let error = edges(column.trim_start_matches("0/"), wrong)
+            .expect_err(column)
+            .to_string();
+        assert!(
+            error.contains(&format!(
+                "a.h5: 'edges/e/{column}': row 1 is {wrong} instead of"
+            )),
+            "{error}"
+        );
+    }
+}
+
+#[neurotess_testing::test]
+fn ids_in_node_sets_are_whole_numbers() {
+    let (folder, path) = circuit(
+        &CONFIG.replace(
+            "\"networks\"",
+            "\"node_sets_file\": \"sets.json\", \"networks\"",
+        ),
+        &Columns::good(),
+    );
+    for (ids, wrong) in [
+        ("[0, -1]", "[1]': is -1"),
+        ("1.5", "': is 1.5"),
+        ("[0, 1.0]", ""),
+    ] {
+        fs::write(
+            folder.path().join("sets.json"),
+            format!("{{\"some\": {{\"node_id\": {ids}}}}}"),
+        )
+        .expect("written");
+        let opened = Circuit::open(&path).expect("a circuit");
+        match wrong {
+            "" => {
+                let nodes = opened
+                    .node_sets
+                    .nodes(&opened.populations, &opened.file, "some");
+                assert_eq!(nodes.expect("nodes").len(), 2);
+            }
+            wrong => {
+                let told = opened.failures[0].to_string();
+                let wrong = format!("sets.json: 'some.node_id{wrong} instead of a whole number");
+                assert!(told.contains(&wrong), "{told}");
+            }
+        }
+    }
+}
+
 #[neurotess_testing::test]
 fn reports_of_other_circuits_are_told() {
     let (folder, path) = circuit(CONFIG, &Columns::good());
