@@ -33,6 +33,7 @@ use pyo3::prelude::*;
 #[pymodule]
 #[pyo3(name = "_neurotess")]
 fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    work::note_process();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CAN_RENDER", cfg!(feature = "render"))?;
     module.add_class::<cell::Cell>()?;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
@@ -23,7 +23,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::cell::Cell;
 use crate::errors;
 use crate::errors::bug;
-use crate::work::{Stop, released, stoppable};
+use crate::work::{Stop, detached, is_forked, released, stoppable};
 
 /// Adds what draws to the module.
 pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -35,7 +35,27 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// Devices by the adapter that was asked for. They are kept: opening one takes a tenth of a second.
 static DEVICES: Mutex<Option<HashMap<Option<String>, Arc<Gpu>>>> = Mutex::new(None);
 
+/// Whether the process that imported the package has opened a device, or is about to.
+static OPENED: AtomicBool = AtomicBool::new(false);
+
+/// An error where a driver's threads and connections have stayed in the process that this one was forked from: whatever
+/// waits for them waits for ever.
+fn usable() -> Result<(), DrawError> {
+    match is_forked() && OPENED.load(Ordering::Relaxed) {
+        true => Err(DrawError::Failed(
+            "this process was forked from one that has opened a graphics device, which is of no use here: start \
+             processes by multiprocessing.get_context(\"spawn\"), or draw only in the new ones"
+                .into(),
+        )),
+        false => Ok(()),
+    }
+}
+
 fn device(adapter: Option<String>) -> Result<Arc<Gpu>, DrawError> {
+    usable()?;
+    if !is_forked() {
+        OPENED.store(true, Ordering::Relaxed);
+    }
     let mut devices = DEVICES.lock().unwrap_or_else(PoisonError::into_inner);
     let devices = devices.get_or_insert_with(HashMap::new);
     if let Some(gpu) = devices.get(&adapter) {
@@ -241,7 +261,8 @@ impl Drawing {
     }
 
     /// The camera of a picture.
-    fn camera(&self, picture: usize) -> PyResult<View> {
+    fn camera(&self, py: Python<'_>, picture: usize) -> PyResult<View> {
+        usable().map_err(|e| undrawn(py, &e))?;
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let drawing = shared.as_ref().ok_or_else(closed)?;
         let missing = || PyValueError::new_err("no such picture");
@@ -262,6 +283,7 @@ impl Drawing {
         reach: f64,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let camera = camera(view)?;
+        usable().map_err(|e| undrawn(py, &e))?;
         let shared = Arc::clone(&self.shared);
         let picked = released(py, None, move || {
             let shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
@@ -273,6 +295,9 @@ impl Drawing {
 
     /// Gives back the memory on the device. Nothing can be drawn afterwards.
     fn close(&self, py: Python<'_>) {
+        if usable().is_err() {
+            return;
+        }
         // A picture that is being drawn is waited for.
         py.detach(|| {
             drop(
@@ -285,6 +310,15 @@ impl Drawing {
     }
 }
 
+impl Drop for Drawing {
+    /// In a forked process a device is not given back: that would wait for its driver's threads.
+    fn drop(&mut self) {
+        if usable().is_err() {
+            std::mem::forget(Arc::clone(&self.shared));
+        }
+    }
+}
+
 impl Drawing {
     /// Draws without the interpreter's lock; one picture at a time, which Ctrl-C stops.
     fn with(
@@ -294,6 +328,7 @@ impl Drawing {
         + Send
         + 'static,
     ) -> PyResult<Py<PyArray3<u8>>> {
+        usable().map_err(|e| undrawn(py, &e))?;
         let shared = Arc::clone(&self.shared);
         let drawn = stoppable(py, None, &Stop::default(), move |stopped| {
             let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
@@ -330,14 +365,14 @@ fn png<'py>(
         height: height as u32,
         pixels: pixels.as_slice()?.to_vec(),
     };
-    let written = py.detach(|| {
+    let written = detached(py, || {
         let bytes = Bytes::default();
         let size = [image.width, image.height];
         let mut png = PngWriter::new(bytes.clone(), size, transparent)?;
         png.write(&image)?;
         png.finish()?;
         std::io::Result::Ok(bytes.0.take())
-    });
+    })?;
     Ok(PyBytes::new(py, &written?))
 }
 

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 use pyo3::prelude::*;
@@ -16,6 +16,40 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// Stack (bytes) of threads: large, for debug builds.
 const STACK: usize = 8 << 20;
+
+/// The process that imported the package.
+static HOME: OnceLock<u32> = OnceLock::new();
+
+/// Notes that this is the process that imports the package.
+pub(crate) fn note_process() {
+    HOME.get_or_init(std::process::id);
+}
+
+/// Whether this process was forked from the one that imported the package. The threads that were there do not exist in
+/// it: neither those of the common pool, which would be waited for for ever, nor those of a graphics driver.
+pub(crate) fn is_forked() -> bool {
+    HOME.get().is_some_and(|&home| home != std::process::id())
+}
+
+/// A pool of threads for one piece of work.
+fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.stack_size(STACK).build().map_err(bug)
+}
+
+/// Does some work on this thread without the interpreter's lock; in a forked process with threads of its own.
+///
+/// # Errors
+/// `RuntimeError` if there are no threads.
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    match is_forked() {
+        true => {
+            let pool = pool(0)?;
+            Ok(py.detach(|| pool.install(work)))
+        }
+        false => Ok(py.detach(work)),
+    }
+}
 
 /// Asks work to stop: `set` by any thread, for all the work that it was given to.
 #[pyclass(frozen, module = "neurotess._neurotess")]
@@ -73,14 +107,13 @@ pub(crate) fn stoppable<T: Send + 'static>(
         // Nobody listens any more if there was an interrupt.
         drop(sender.send(done));
     };
-    match threads {
+    // Of 0 threads: as many as there are cores.
+    let own = threads
+        .map(|threads| threads.max(1))
+        .or(is_forked().then_some(0));
+    match own {
         // Threads of its own, so that many cells at a time do not wait for one another.
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.max(1))
-            .stack_size(STACK)
-            .build()
-            .map_err(bug)?
-            .spawn(guarded),
+        Some(threads) => pool(threads)?.spawn(guarded),
         None => {
             let thread = std::thread::Builder::new().stack_size(STACK);
             thread.spawn(guarded).map_err(bug)?;

@@ -23,7 +23,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::work::released;
+use crate::work::{detached, released};
 use crate::{arrays, errors, json};
 pub(crate) use edits::{Edits, diff};
 
@@ -108,7 +108,7 @@ impl Cell {
             ..ReadOptions::default()
         };
         // Small files take less time than a thread.
-        let read = py.detach(|| formats::read(path, &options));
+        let read = detached(py, || formats::read(path, &options))?;
         Self::of_result(py, read)
     }
 
@@ -122,7 +122,7 @@ impl Cell {
     ) -> PyResult<Self> {
         let format = format.map(|name| format_named(&name)).transpose()?;
         let options = reading(strict);
-        let read = py.detach(|| formats::read_bytes(bytes, &name, format, &options));
+        let read = detached(py, || formats::read_bytes(bytes, &name, format, &options))?;
         Self::of_result(py, read)
     }
 
@@ -149,7 +149,7 @@ impl Cell {
                 radii.as_slice()?,
             ],
         };
-        let read = py.detach(|| columns.read(&name, &reading(strict)));
+        let read = detached(py, || columns.read(&name, &reading(strict)))?;
         Self::of_result(py, read)
     }
 
@@ -372,22 +372,22 @@ impl Cell {
     }
 
     fn path_length(&self, py: Python<'_>, start: Option<u32>, end: Option<u32>) -> PyResult<f64> {
-        py.detach(|| paths::length(&self.morphology, [start, end]))
+        detached(py, || paths::length(&self.morphology, [start, end]))?
     }
 
     fn path_distances(&self, py: Python<'_>, start: Option<u32>) -> PyResult<Py<PyArray1<f64>>> {
-        let distances = py.detach(|| paths::distances(&self.morphology, start))?;
+        let distances = detached(py, || paths::distances(&self.morphology, start))??;
         arrays::column(py, distances)
     }
 
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let measures = py.detach(|| Measures::of(&self.morphology));
+        let measures = detached(py, || Measures::of(&self.morphology))?;
         json::serialized(py, &measures)
     }
 
     /// Rows as SWC has them: numbers, types, positions, radii, numbers of the parents.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let table = py.detach(|| table::rows(&self.morphology));
+        let table = detached(py, || table::rows(&self.morphology))?;
         let columns = PyDict::new(py);
         columns.set_item("id", arrays::column(py, table.ids)?)?;
         columns.set_item("type", arrays::column(py, table.types)?)?;
@@ -416,26 +416,26 @@ impl Cell {
             None => format_named(&extension)?,
         };
         let existing = existing(overwrite);
-        let lost = py.detach(|| {
+        let lost = detached(py, || {
             let mut output = Output::create(&path, existing).map_err(|e| errors::output(&e))?;
             let lost = formats::write_numbered(&self.morphology, format, numbers, output.file());
             let lost = lost.map_err(|e| unwritten(format, e))?;
             output.finish().map_err(|e| errors::output(&e))?;
             PyResult::Ok(lost)
-        })?;
+        })??;
         Ok(lost.iter().map(ToString::to_string).collect())
     }
 
     /// The bytes of a file.
     fn to_bytes<'py>(&self, py: Python<'py>, format: &str) -> PyResult<Bound<'py, PyBytes>> {
         let format = format_named(format)?;
-        let bytes = py.detach(|| {
+        let bytes = detached(py, || {
             let mut file = Cursor::new(Vec::new());
             let written = formats::write(&self.morphology, format, &mut file);
             written
                 .map(|_lost| file.into_inner())
                 .map_err(|e| unwritten(format, e))
-        })?;
+        })??;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -448,7 +448,9 @@ impl Cell {
     ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
         let py = slf.py();
         let cell = slf.get();
-        let state = py.detach(|| state::to_bytes(&cell.morphology, &cell.format, &cell.warnings));
+        let state = detached(py, || {
+            state::to_bytes(&cell.morphology, &cell.format, &cell.warnings)
+        })?;
         let restore = py.get_type::<Self>().getattr("restore")?;
         Ok((restore, (PyBytes::new(py, &state),)))
     }

@@ -23,7 +23,7 @@ use crate::arrays::{self, Pair};
 use crate::cell::Cell;
 use crate::errors;
 use crate::surface::{Columns, Recipe, Stopped, Surface, meshed, of_made, taken};
-use crate::work::{Stop, released, stoppable};
+use crate::work::{Stop, detached, released, stoppable};
 pub(crate) use recordings::Report;
 
 /// Coarse meshes that are kept, for nodes that share a morphology.
@@ -248,8 +248,7 @@ impl Circuit {
             }),
             sample: sample.map(|count| (count, sample_seed)),
         };
-        let nodes = py
-            .detach(|| self.circuit.select(&selection))
+        let nodes = detached(py, || self.circuit.select(&selection))?
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         let populations = nodes.iter().map(|node| node.population).collect();
         let rows = nodes.iter().map(|node| node.row).collect();
@@ -260,7 +259,7 @@ impl Circuit {
     fn morphology(&self, py: Python<'_>, template: usize) -> PyResult<Cell> {
         let missing = || PyIndexError::new_err("no such morphology");
         let template = self.circuit.templates.get(template).ok_or_else(missing)?;
-        let read = py.detach(|| template.read().cloned());
+        let read = detached(py, || template.read().cloned())?;
         read.map(Cell::of_read).map_err(|e| errors::read(py, e))
     }
 
@@ -268,7 +267,7 @@ impl Circuit {
     fn placement(&self, py: Python<'_>, population: u32, row: u32) -> PyResult<[[f64; 4]; 3]> {
         let instance = self.instance(population, row)?;
         let template = &self.circuit.templates[instance.template.index()];
-        let read = py.detach(|| template.read());
+        let read = detached(py, || template.read())?;
         let read = read.map_err(|e| errors::read(py, e))?;
         let at = instance.world_from_cell(soma_center(&read.morphology));
         let rows = at.matrix3.transpose();
@@ -283,10 +282,10 @@ impl Circuit {
     fn inputs(&self, py: Python<'_>, population: u32, row: u32) -> PyResult<Py<PyArray2<f64>>> {
         let instance = self.instance(population, row)?;
         let template = &self.circuit.templates[instance.template.index()];
-        let read = py.detach(|| template.read());
+        let read = detached(py, || template.read())?;
         let read = read.map_err(|e| errors::read(py, e))?;
         let at = instance.world_from_cell(soma_center(&read.morphology));
-        let inputs = py.detach(|| self.circuit.inputs(&[instance]));
+        let inputs = detached(py, || self.circuit.inputs(&[instance]))?;
         let inputs = inputs.map_err(|e| unreadable(py, &e))?;
         let cell_from_world = at.inverse();
         let places = inputs.iter().flatten();
@@ -331,7 +330,7 @@ impl Mesher {
         let template = instance.template;
         // Its errors have their own exception.
         let file = &self.circuit.templates[template.index()];
-        let read = py.detach(|| file.read()).map_err(|e| errors::read(py, e))?;
+        let read = detached(py, || file.read())?.map_err(|e| errors::read(py, e))?;
         let (circuit, meshes) = (Arc::clone(&self.circuit), Arc::clone(&self.meshes));
         let options = self.options.clone();
         let made = stoppable(py, threads, &Stop::default(), move |stopped| {

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use super::unreadable;
 use crate::arrays::{self, Pair};
 use crate::errors::bug;
-use crate::work::released;
+use crate::work::{detached, released};
 
 /// A file of values over time, or of spikes.
 #[pyclass(frozen, module = "neurotess._neurotess")]
@@ -25,7 +25,7 @@ pub(crate) struct Report {
 impl Report {
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let opened = py.detach(|| RecordingFile::open(path));
+        let opened = detached(py, || RecordingFile::open(path))?;
         let file = opened.map_err(|e| unreadable(py, &e))?;
         Ok(Self {
             file: Arc::new(file),
@@ -89,7 +89,7 @@ impl Report {
         if index >= p.nodes.len() {
             return Err(PyIndexError::new_err("no such node"));
         }
-        let found = py.detach(|| p.compartments(index));
+        let found = detached(py, || p.compartments(index))?;
         let found = found.map_err(|e| unreadable(py, &e))?;
         let sections = found.iter().map(|c| c.section).collect();
         let along = found.iter().map(|c| c.along).collect();

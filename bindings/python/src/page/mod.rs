@@ -25,7 +25,7 @@ use crate::circuit::Circuit;
 use crate::errors;
 use crate::picture::{GivenSeries, GivenValues, own_numbers, picked_dict, undrawn};
 use crate::surface::Recipe;
-use crate::work::{Stop, stoppable};
+use crate::work::{Stop, detached, stoppable};
 use colors::{Colors, Keywords};
 use shown::{Placed, Shown};
 
@@ -122,7 +122,7 @@ impl Page {
             false => Existing::Refuse("use force=True, or another name"),
         };
         let html = self.made.html.as_bytes();
-        let written = py.detach(|| write_whole(&path, existing, |to| to.write_all(html)));
+        let written = detached(py, || write_whole(&path, existing, |to| to.write_all(html)))?;
         written.map_err(|e| errors::output(&e))
     }
 }

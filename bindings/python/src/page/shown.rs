@@ -20,6 +20,7 @@ use super::Unmade;
 use crate::cell::Cell;
 use crate::circuit::{Circuit, node_ref};
 use crate::errors;
+use crate::work::detached;
 
 /// The cells of a page: each that is meshed once, and where which is shown.
 pub(super) struct Shown {
@@ -83,7 +84,7 @@ impl Shown {
                 Some(&cell) => cell,
                 None => {
                     let template = &circuit.templates[instance.template.index()];
-                    let read = py.detach(|| template.read());
+                    let read = detached(py, || template.read())?;
                     let read = read.map_err(|e| errors::read(py, e))?;
                     shown.cells.push(Arc::new(read.morphology.clone()));
                     of_template.insert(instance.template.index(), shown.cells.len() - 1);

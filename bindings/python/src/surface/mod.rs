@@ -22,7 +22,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::cell::{Cell, existing};
 use crate::options::mesh_options;
-use crate::work::{Stop, released, stoppable};
+use crate::work::{Stop, detached, released, stoppable};
 use crate::{arrays, errors, json};
 pub(crate) use columns::{Columns, Stopped};
 use slices::Slices;
@@ -175,7 +175,7 @@ impl Surface {
             quads: quads.as_slice()?.as_chunks().0,
             own,
         };
-        Ok(py.detach(|| work(&slices)))
+        detached(py, || work(&slices))
     }
 }
 
