@@ -21,7 +21,8 @@ const unpacked = async (text) => {
     const style = document.createElement('style');
     style.textContent = shaders.style;
     document.head.append(style);
-    document.body.innerHTML = shaders.body.replaceAll('{name}', document.querySelector('title').innerHTML.replaceAll('"', '&quot;'));
+    // Joined: in a replacement, $ and what follows it would stand for parts of the page.
+    document.body.innerHTML = shaders.body.split('{name}').join(document.querySelector('title').innerHTML.replaceAll('"', '&quot;'));
     window.neurotess = { shaders, cells, bytes, first, unpacked };
     const script = document.createElement('script');
     script.type = 'module';

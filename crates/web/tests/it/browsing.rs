@@ -39,7 +39,11 @@ struct Opened {
 }
 
 fn opened(hash: &str) -> Opened {
-    let (cell, page) = page_of(Meshed::sample("granule"));
+    opened_with(Meshed::sample("granule"), hash)
+}
+
+fn opened_with(cell: Meshed, hash: &str) -> Opened {
+    let (cell, page) = page_of(cell);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("page.html");
     let mut to = std::fs::File::create(&file).expect("a file");
@@ -433,6 +437,20 @@ fn a_second_click_shows_an_entry_alone_and_a_third_and_fourth_show_all() {
             .is_some_and(|hidden| !hidden.contains(&1.into()))
     );
     assert_eq!(all[3], serde_json::json!([]));
+}
+
+/// Every character that a replacement, a template or HTML knows means itself in a title.
+#[neurotess_testing::test(needs(full, chromium, gpu))]
+fn a_page_shows_its_title_as_it_is() {
+    let title = "a$` b$' c$& d$1 e$$ ${f} {name} {title} {cells} <b>&amp; \"g\" 'h' \\ `i`";
+    let mut cell = Meshed::sample("granule");
+    cell.name = title.to_owned();
+    let mut opened = opened_with(cell, "#renderer=webgl");
+    let told = opened.browser.evaluate(
+        "[document.title, document.querySelector('h1').textContent, app.canvas.ariaLabel.split(', in three')[0]]",
+    );
+    assert_eq!(told, serde_json::json!([title, title, title]));
+    opened.assert_silent();
 }
 
 #[neurotess_testing::test(needs(full, chromium))]

@@ -125,6 +125,38 @@ fn shaders_of_a_page_are_valid_as_they_are_joined() {
     }
 }
 
+/// A title is joined with the page: in a replacement that is a text, `$&`, `$'` and their like stand for parts
+/// of the page.
+#[neurotess_testing::test]
+fn scripts_replace_by_functions_or_by_fixed_texts() {
+    let folder = neurotess_testing::workspace().join("crates/web");
+    let mut seen = 0;
+    for script in ["host", "drop"].map(|name| folder.join(name)) {
+        for file in std::fs::read_dir(script).expect("scripts").flatten() {
+            let path = file.path();
+            if path.extension().is_none_or(|end| end != "js") {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("a script");
+            for call in text.split(".replace").skip(1) {
+                let call = call.strip_prefix("All").unwrap_or(call);
+                let call = call.lines().next().unwrap_or_default();
+                let Some((what, by)) = call.split_once(", ") else {
+                    continue;
+                };
+                if !what.starts_with('(') || what.contains(");") {
+                    continue;
+                }
+                let text = by.strip_prefix('\'').and_then(|by| by.split('\'').next());
+                let fixed = text.is_some_and(|text| !text.contains('$'));
+                assert!(by.starts_with("() =>") || fixed, "{}: {by}", path.display());
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen >= 3, "{seen}");
+}
+
 #[neurotess_testing::test]
 fn titles_are_text() {
     let cells = [Meshed::sample("granule")];
@@ -132,6 +164,16 @@ fn titles_are_text() {
     let page = written(&cells, None, &PageMarkers::default(), title).expect("a page");
     let title = "<title>a&lt;script>alert(&quot;1&quot;)&lt;/script> &amp; b</title>";
     assert!(page.html.contains(title));
+    // What our own forms know means nothing in it.
+    let title = "{cells} {title} {name} {host} $& $` $' $1 $$ ${x} \\";
+    let page = written(&cells, None, &PageMarkers::default(), title).expect("a page");
+    let shown = title.replace('&', "&amp;");
+    assert!(page.html.contains(&format!("<title>{shown}</title>")));
+    assert_eq!(
+        page.html.matches("{name}").count(),
+        2,
+        "the title's, and the script's"
+    );
 }
 
 #[neurotess_testing::test]
