@@ -15,6 +15,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+use neurotess_output::{OutputError, own_file};
 use thiserror::Error;
 
 use crate::key::Key;
@@ -36,6 +37,9 @@ pub enum FileError {
     /// It is not a cache, and is never replaced.
     #[error("it is no cache of neurotess")]
     Foreign,
+    /// It is a link, which may lead to anything, and is never followed.
+    #[error("it is a link, which is not followed: remove it")]
+    Link,
     /// It is a cache of another version of this format.
     #[error("it is of another version")]
     Format,
@@ -67,6 +71,13 @@ pub(crate) struct CacheFile {
 impl CacheFile {
     /// Opens a file and reads its index; `None` if there is none.
     pub(crate) fn open(path: &Path) -> Result<Option<Self>, FileError> {
+        match own_file(path) {
+            Ok(None) => return Ok(None),
+            Ok(Some(_)) => {}
+            Err(OutputError::NotOurs { what: "a link", .. }) => return Err(FileError::Link),
+            Err(OutputError::Broken { source, .. }) => return Err(source.into()),
+            Err(_) => return Err(FileError::Foreign),
+        }
         let mut file = match File::open(path) {
             Ok(file) => file,
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),

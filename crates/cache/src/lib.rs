@@ -146,7 +146,7 @@ impl Cache {
         let mut warnings = Vec::new();
         let open = |path: PathBuf| {
             let opened = CacheFile::open(&path);
-            let ours = !matches!(opened, Err(FileError::Foreign));
+            let ours = !matches!(opened, Err(FileError::Foreign | FileError::Link));
             let unusable = opened.is_err();
             let content = opened.unwrap_or_else(|why| {
                 let path = path.clone();

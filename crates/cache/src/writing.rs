@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::{self, BufWriter};
 use std::path::PathBuf;
 
-use neurotess_output::{Existing, Output, OutputError};
+use neurotess_output::{Output, OutputError};
 
 use crate::OldFile;
 use crate::file::FileWriter;
@@ -127,7 +127,7 @@ impl Writing {
 fn begin(targets: &[PathBuf]) -> State {
     let mut first = None;
     for path in targets {
-        let begun = Output::create(path, Existing::Replace).and_then(|output| {
+        let begun = Output::create_own(path).and_then(|output| {
             let writer = FileWriter::begin(BufWriter::new(Part(output)));
             writer.map_err(|e| OutputError::broken(path, e))
         });

@@ -19,6 +19,9 @@ pub enum OutputError {
         .path.display()
     )]
     NotAFile { path: PathBuf, what: &'static str },
+    /// Where a file of ours is to be there is something else, which is not written to.
+    #[error("{} is {what}, not a file of neurotess: remove it", .path.display())]
+    NotOurs { path: PathBuf, what: &'static str },
     /// Links that lead nowhere.
     #[error("{} is a link that cannot be followed ({source}): remove it", .path.display())]
     Link { path: PathBuf, source: io::Error },

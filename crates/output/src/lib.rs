@@ -5,7 +5,8 @@
 //! does not use up; a lock on the file keeps two runs from writing one file at a time.
 //!
 //! Only regular files are ever replaced. Where the name is a link, its target is written, and the link
-//! stays; a device, a pipe or a folder is left alone. [`Output::standard`] is for standard output: it
+//! stays; a device, a pipe or a folder is left alone. Files that nobody named, records and caches, follow no link
+//! ([`append_own`], [`Output::create_own`]). [`Output::standard`] is for standard output: it
 //! gets the whole or nothing too.
 //!
 //! A program that is interrupted calls [`remove_unfinished`] and leaves. **Why not** a flag that
@@ -16,6 +17,7 @@
 mod error;
 mod existing;
 mod output;
+mod own;
 mod part;
 
 use std::fs::File;
@@ -25,6 +27,7 @@ use std::path::Path;
 pub use error::OutputError;
 pub use existing::Existing;
 pub use output::Output;
+pub use own::{append_own, own_file};
 pub use part::{Ended, remove_unfinished};
 
 /// Writes a file from beginning to end.
@@ -135,6 +138,46 @@ mod tests {
             matches!(circle, Err(OutputError::Link { .. })),
             "{circle:?}"
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_of_our_own_follow_no_link() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("precious"), "theirs").expect("written");
+        symlink("precious", at("link")).expect("linked");
+        symlink("nothing", at("dangling")).expect("linked");
+        fs::create_dir(at("folder")).expect("made");
+        for name in ["link", "dangling", "folder"] {
+            let refused = append_own(&at(name)).map(drop);
+            assert!(
+                matches!(refused, Err(OutputError::NotOurs { .. })),
+                "{refused:?}"
+            );
+            let refused = Output::create_own(&at(name)).map(drop);
+            assert!(
+                matches!(refused, Err(OutputError::NotOurs { .. })),
+                "{refused:?}"
+            );
+            assert!(own_file(&at(name)).is_err());
+        }
+        assert_eq!(fs::read(at("precious")).expect("there"), b"theirs");
+        assert!(!at("nothing").exists());
+        // A temporary file that is a link is none of ours, either.
+        symlink("nothing", at(".a.ply.neurotess-part")).expect("linked");
+        assert!(Output::create(&at("a.ply"), REFUSE).is_err());
+        assert!(!at("nothing").exists());
+        for text in [b"one", b"two"] {
+            let mut file = append_own(&at("own")).expect("opened");
+            file.write_all(text).expect("written");
+        }
+        assert_eq!(fs::read(at("own")).expect("there"), b"onetwo");
+        let mut output = Output::create_own(&at("own")).expect("begun");
+        output.file().write_all(b"new").expect("written");
+        output.finish().expect("finished");
+        assert_eq!(fs::read(at("own")).expect("there"), b"new");
     }
 
     #[cfg(unix)]

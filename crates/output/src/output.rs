@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::OutputError;
 use crate::existing::{Existing, target};
+use crate::own::own_file;
 use crate::part::{lock, open_part, part_of, settle};
 
 /// A file being written; dropped before it is finished, it was never there.
@@ -58,6 +59,15 @@ impl Output {
                 existing,
             },
         })
+    }
+
+    /// Begins a file of ours that nobody named, in place of the one that is there.
+    ///
+    /// # Errors
+    /// [`OutputError::NotOurs`] if there is something else than a file; what is in the way.
+    pub fn create_own(path: &Path) -> Result<Self, OutputError> {
+        own_file(path)?;
+        Self::create(path, Existing::Replace)
     }
 
     /// Begins what standard output gets as a whole at the end, since some formats are not written from

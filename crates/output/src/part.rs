@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::OutputError;
+use crate::own::open_own;
 
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
@@ -42,15 +43,16 @@ pub(crate) fn open_part(part: &Path, path: &Path) -> Result<File, OutputError> {
     let taken = || OutputError::Taken { path: path.into() };
     let broken = |e| OutputError::broken(path, e);
     // Whatever else has this name is not ours.
-    if fs::symlink_metadata(part).is_ok_and(|data| !data.is_file()) {
-        return Err(OutputError::NotAFile {
-            path: part.into(),
-            what: "in the way and no regular file",
-        });
-    }
-    let mut options = OpenOptions::new();
-    options.create(true).truncate(false).write(true);
-    let file = options.open(part).map_err(broken)?;
+    let opened = open_own(part, OpenOptions::new().write(true));
+    let file = opened.map_err(|e| match e {
+        OutputError::Broken { source, .. } => broken(source),
+        // Another run has given the file its final name meanwhile, or removed it.
+        OutputError::NotOurs {
+            what: "being replaced",
+            ..
+        } => taken(),
+        other => other,
+    })?;
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => return Err(taken()),
         // Some file systems know no locks.

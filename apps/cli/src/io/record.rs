@@ -19,19 +19,22 @@
 //! different inputs would differ.
 
 use std::collections::HashMap;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::UNIX_EPOCH;
 
 use neurotess::formats;
+use neurotess::output::{OutputError, append_own, own_file};
 use serde::{Deserialize, Serialize};
 
 use super::targets::Job;
 
 /// Name of the record.
 pub(crate) const NAME: &str = ".neurotess-made";
+/// What every line begins with.
+const BEGIN: &[u8] = b"{\"out\":";
 
 /// Length and time, by which a file is distinguished from another one of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -162,7 +165,13 @@ impl OutputRecord {
 
     /// Reads it again, with the lines that other runs have added.
     pub(crate) fn read(&self) {
-        let text = fs::read(self.folder.join(NAME)).unwrap_or_default();
+        let path = self.folder.join(NAME);
+        let ours = matches!(own_file(&path), Ok(Some(_)));
+        let text = if ours {
+            fs::read(path).unwrap_or_default()
+        } else {
+            Vec::new()
+        };
         let mut known: HashMap<String, Vec<Line>> = HashMap::new();
         let lines = text.split(|&byte| byte == b'\n');
         for line in lines.filter_map(|line| serde_json::from_slice::<Line>(line).ok()) {
@@ -217,7 +226,7 @@ impl OutputRecord {
         job: &Job,
         inputs: Option<&[Stamp]>,
         made: &[(&Path, &Path)],
-    ) -> io::Result<()> {
+    ) -> Result<(), OutputError> {
         let now: Vec<PathBuf> = made.iter().map(|(_, now)| now.to_path_buf()).collect();
         let (Some(is), Some([of, further @ ..])) = (Stamp::of_all(&now), inputs) else {
             return Ok(());
@@ -231,21 +240,26 @@ impl OutputRecord {
             further: further.to_vec(),
             parts: parts.map(|(out, _)| self.name(out)).collect(),
         };
-        let mut text = serde_json::to_vec(&line)?;
+        let failed = |e: io::Error| OutputError::broken(&self.folder.join(NAME), e);
+        let mut text = serde_json::to_vec(&line).map_err(|e| failed(e.into()))?;
         text.push(b'\n');
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if file.is_none() {
-            let mut options = OpenOptions::new();
-            *file = Some(
-                options
-                    .create(true)
-                    .append(true)
-                    .open(self.folder.join(NAME))?,
-            );
+            let path = self.folder.join(NAME);
+            // What begins otherwise somebody else has written.
+            let begin = match own_file(&path)? {
+                Some(_) => fs::read(&path).unwrap_or_default(),
+                None => Vec::new(),
+            };
+            if !begin.is_empty() && !begin.starts_with(BEGIN) {
+                let what = "of another kind";
+                return Err(OutputError::NotOurs { path, what });
+            }
+            *file = Some(append_own(&path)?);
         }
         match &mut *file {
             // A single write, so that lines of several runs are not mixed.
-            Some(file) => file.write_all(&text),
+            Some(file) => file.write_all(&text).map_err(failed),
             None => Ok(()),
         }
     }
@@ -296,7 +310,7 @@ mod tests {
         let made = [(&*job.out, &*job.out)];
         record.add(&job, Some(&inputs), &made).expect("recorded");
         // An incomplete line, and one of a run that was killed, do no harm.
-        let mut file = OpenOptions::new();
+        let mut file = fs::OpenOptions::new();
         let mut file = file
             .append(true)
             .open(folder.path().join(NAME))

@@ -7,7 +7,7 @@ use super::options::MeshOptions;
 use crate::io::claims::{Claim, Claimed, claim};
 use crate::io::morphologies::readable;
 use crate::io::output::OutputError;
-use crate::io::record::{self, OutputRecord, Stamp};
+use crate::io::record::{OutputRecord, Stamp};
 use crate::io::targets::Job;
 use crate::report::{Failed, Failure, Log, Reporter, bug};
 
@@ -85,11 +85,8 @@ impl MeshRun<'_> {
                 if self.records
                     && let Err(e) = record.add(job, inputs.as_deref(), &files.meshes(&job.out))
                 {
-                    let name = record::NAME;
-                    self.reporter.warning(&format!(
-                        "{name} beside {} cannot be written ({e}): --resume will know less",
-                        job.out.display()
-                    ));
+                    self.reporter
+                        .warning(&format!("{e}; --resume will know less"));
                 }
                 let entry = Entry::Done(cell);
                 self.log(&entry);

@@ -143,3 +143,40 @@ fn odd_options_are_refused_or_warned_of() {
             .is_empty()
     );
 }
+
+/// A record and a cache are ours to write, but a link in their place leads elsewhere.
+#[cfg(unix)]
+#[neurotess_testing::test]
+fn files_that_nobody_named_follow_no_links() {
+    use std::os::unix::fs::symlink;
+
+    let work = Work::new();
+    work.file("cells/a.swc", SMALL);
+    for (there, name) in [(true, "precious"), (false, "nothing")] {
+        if there {
+            work.file(name, "theirs\n");
+        }
+        let out = format!("out_{name}");
+        std::fs::create_dir(work.path(&out)).expect("made");
+        symlink(
+            work.path(name),
+            work.path(&format!("{out}/.neurotess-made")),
+        )
+        .expect("linked");
+        let run = work.run(&format!("mesh cells -o {out} --level 1")).exits(0);
+        let told = run.stderr();
+        assert!(
+            told.contains(".neurotess-made is a link, not a file of neurotess: remove it"),
+            "{told}"
+        );
+        work.run(&format!("mesh cells -o {out} --level 1 --resume"))
+            .exits(0);
+    }
+    assert_eq!(work.text("precious"), "theirs\n");
+    assert!(!work.path("nothing").exists());
+    // A plain file of somebody else's stays, too.
+    work.file("other/.neurotess-made", "notes\n");
+    let told = work.run("mesh cells -o other --level 1").exits(0).stderr();
+    assert!(told.contains("of another kind"), "{told}");
+    assert_eq!(work.text("other/.neurotess-made"), "notes\n");
+}
