@@ -10,6 +10,8 @@ import sys
 
 import gmsh
 
+INTRACELLULAR = 3_000_000
+
 gmsh.initialize()
 gmsh.option.setNumber("General.Verbosity", 2)
 gmsh.open(sys.argv[1])
@@ -19,7 +21,8 @@ sections = [tag for _, tag in gmsh.model.getEntities(2)]
 loop = gmsh.model.geo.addSurfaceLoop(sections)
 volume = gmsh.model.geo.addVolume([loop])
 gmsh.model.geo.synchronize()
-gmsh.model.addPhysicalGroup(3, [volume], name="intracellular")
+# A number that no type and no wall has: programs that read groups without their dimension would make one of two.
+gmsh.model.addPhysicalGroup(3, [volume], INTRACELLULAR, name="intracellular")
 gmsh.model.mesh.generate(3)
 
 gmsh.write(sys.argv[2])

@@ -215,7 +215,9 @@ volume = abs(numpy.einsum('ij,ij->i', b - a, numpy.cross(c - a, d - a))).sum() /
 gmsh.initialize()
 gmsh.option.setNumber('General.Verbosity', 2)
 gmsh.open(sys.argv[1])
-names = [gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()]
+groups = gmsh.model.getPhysicalGroups()
+assert len({number for _, number in groups}) == len(groups), groups
+names = [gmsh.model.getPhysicalName(*group) for group in groups]
 print(volume, *names)
 ";
     let python = python_with("gmsh").expect("the test needs it");
