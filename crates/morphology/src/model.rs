@@ -107,6 +107,8 @@ pub enum SomaKind {
     Contour,
     /// Two or more samples: stacked frusta.
     Cylinders,
+    /// Samples on its surface, all around one in its middle: a sphere.
+    Surface,
 }
 
 impl SomaKind {
@@ -121,6 +123,7 @@ impl SomaKind {
             Self::ThreePoint => "three_point",
             Self::Contour => "contour",
             Self::Cylinders => "cylinders",
+            Self::Surface => "surface",
         }
     }
 }

@@ -54,7 +54,7 @@ class Soma:
     """A soma as it was traced, and the sphere that stands for it."""
 
     kind: str
-    """``"point"``, ``"three_point"``, ``"contour"`` or ``"cylinders"``."""
+    """``"point"``, ``"three_point"``, ``"contour"``, ``"cylinders"`` or ``"surface"``."""
     center: NDArray[np.float64]
     """Center (µm)."""
     radius: float

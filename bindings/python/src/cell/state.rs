@@ -25,6 +25,7 @@ pub(super) fn to_bytes(cell: &Morphology, format: &str, warnings: &[Told]) -> Ve
             SomaKind::ThreePoint => 1,
             SomaKind::Contour => 2,
             SomaKind::Cylinders => 3,
+            SomaKind::Surface => 4,
         });
         out.ball(soma.center, soma.radius);
         out.all(&soma.samples, |out, sample| {
@@ -104,6 +105,7 @@ fn soma(from: &mut From<'_>) -> Option<Soma> {
         1 => SomaKind::ThreePoint,
         2 => SomaKind::Contour,
         3 => SomaKind::Cylinders,
+        4 => SomaKind::Surface,
         _ => return None,
     };
     let (center, radius) = from.ball()?;

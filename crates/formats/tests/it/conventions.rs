@@ -176,3 +176,57 @@ fn a_root_within_an_outline_hangs_on_its_soma() {
     assert!(told && attachment == Attachment::Soma { soma: 0, sample: 1 });
     assert_eq!(attached("0 20 0"), (false, Attachment::Free));
 }
+
+/// A ball of 6 µm about the origin with 24 places of a radius that says nothing, 6.5 µm from it, and a neurite.
+fn with_places(parent: impl Fn(usize) -> i64, radius: f64) -> Read {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let mut text = String::from("1 1 0 0 0 6 -1\n");
+    for i in 0..24_usize {
+        let height = 1.0 - (i as f64 + 0.5) / 12.0;
+        let (sin, cos) = (golden * i as f64).sin_cos();
+        let width = 6.5 * (1.0 - height * height).sqrt();
+        let [x, y, z] = [width * cos, width * sin, 6.5 * height];
+        text += &format!("{} 1 {x} {y} {z} {radius} {}\n", i + 2, parent(i));
+    }
+    read(&(text + "26 3 7.5 0 0 0.8 1\n27 3 40 0 0 0.8 26\n"))
+}
+
+#[neurotess_testing::test]
+fn places_on_a_soma_are_no_balls_whatever_they_hang_on() {
+    let on_the_middle = |_| 1_i64;
+    let in_a_row = |i| i as i64 + 1;
+    let on_nothing = |_| -1_i64;
+    let a_piece = |i| if i == 0 { -1 } else { i as i64 + 1 };
+    for parent in [
+        &on_the_middle as &dyn Fn(usize) -> i64,
+        &in_a_row,
+        &on_nothing,
+        &a_piece,
+    ] {
+        for radius in [1.0, 0.0, 0.3] {
+            let read = with_places(parent, radius);
+            let [soma] = &read.morphology.somata[..] else {
+                panic!("{} somata", read.morphology.somata.len());
+            };
+            assert_eq!(soma.kind.name(), "surface");
+            assert!((soma.radius - 6.5).abs() < 1e-4, "{}", soma.radius);
+            assert_eq!(soma.samples.len(), 25);
+            assert!(codes(&read).contains(&"soma_marks"), "{:?}", read.warnings);
+            // Written, it is the same soma.
+            let mut bytes = Vec::new();
+            swc::write(&read.morphology, &mut bytes).expect("written");
+            let again =
+                swc::read_bytes(&bytes, "again.swc", &ReadOptions::default()).expect("read");
+            let again = &again.morphology.somata[0];
+            assert_eq!((again.kind, again.radius), (soma.kind, soma.radius));
+        }
+    }
+}
+
+/// Somata of other cells keep theirs, however thin.
+#[neurotess_testing::test]
+fn somata_with_a_radius_of_their_own_stay_somata() {
+    let text =
+        "1 1 0 0 0 6 -1\n2 1 9 0 0 1.5 -1\n3 1 0 9 0 1 -1\n4 1 0 0 9 1.8 -1\n5 1 -9 0 0 1.7 -1\n";
+    assert_eq!(read(text).morphology.somata.len(), 5);
+}

@@ -10,6 +10,7 @@
 //! [`Morphology`] gives an equal one; the rules that choose the main soma and the origin use only
 //! what survives the rounding to `f32` for that reason.
 
+mod marks;
 mod notes;
 mod origin;
 mod size;
@@ -167,6 +168,9 @@ fn build(
         links = Links::of(&parents);
     }
     if matches!(somata_are, Traced::Samples) {
+        if typed && somata.gather_marks(nodes, &mut parents) {
+            links = Links::of(&parents);
+        }
         somata.merge_coincident(nodes, &mut notes);
     }
     if let [_, second, ..] = &somata.members[..] {

@@ -21,6 +21,8 @@ pub enum Oddity {
     SeveralSomata,
     /// The samples of a soma fork, other than those of a three-point soma.
     SomaBranches,
+    /// Samples of a soma have no radius of their own.
+    SomaMarks,
     /// A soma has no positive radius.
     SomaZeroRadius,
     /// Samples of type 1 inside a neurite, apart from the tree's soma: kept as points.
@@ -47,6 +49,7 @@ impl Oddity {
             Self::CoincidentSomata => "coincident_somata",
             Self::SeveralSomata => "several_somata",
             Self::SomaBranches => "soma_branches",
+            Self::SomaMarks => "soma_marks",
             Self::SomaZeroRadius => "soma_zero_radius",
             Self::SomaInsideNeurite => "soma_inside_neurite",
             Self::RootInSoma => "root_in_soma",
@@ -67,6 +70,7 @@ impl fmt::Display for Oddity {
             Self::CoincidentSomata => "somata in the same place: taken as one",
             Self::SeveralSomata => "several separate somata: the thickest is taken as the main one",
             Self::SomaBranches => "the samples of the soma fork: taken as frusta along the links, or as an outline if they have no thickness",
+            Self::SomaMarks => "samples of the soma have no radius of their own: taken as places on its outline or surface, or left out",
             Self::SomaZeroRadius => "the soma has no radius",
             Self::SomaInsideNeurite => "soma samples inside a neurite: kept as points of type 1",
             Self::RootInSoma => "neurites that begin within the soma and hang on nothing: taken as the soma's",
@@ -111,6 +115,10 @@ impl Notes {
 
     /// Of a soma whose samples are no outlines.
     pub(super) fn fork(&mut self, soma: &Soma, members: &[u32]) {
+        if soma.is_marked() {
+            self.add(Oddity::SomaMarks, members[0]);
+            return;
+        }
         let of_no_kind = matches!(soma.kind, SomaKind::Cylinders | SomaKind::Contour);
         if let Some(fork) = soma.fork().filter(|_| of_no_kind) {
             self.add(Oddity::SomaBranches, members[fork as usize]);

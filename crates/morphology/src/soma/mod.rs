@@ -15,6 +15,8 @@
 
 mod cones;
 mod directions;
+mod frusta;
+mod marks;
 mod outline;
 mod shape;
 mod smooth;
@@ -27,6 +29,8 @@ pub use triangles::{Hidden, SomaMeshError};
 use std::f64::consts::PI;
 
 use glam::DVec3;
+
+use marks::Marks;
 
 use crate::{Soma, SomaKind, SomaSample};
 
@@ -67,13 +71,15 @@ impl Soma {
             )
         } else if let Some((centroid, radius)) = contour(&samples, &positions) {
             (SomaKind::Contour, centroid, radius)
+        } else if let Some(marked) = marked(&samples, &positions) {
+            marked
         } else if let Some((center, radius)) = without_thickness(&samples, &positions) {
             (SomaKind::Contour, center, radius)
         } else {
             (
                 SomaKind::Cylinders,
                 mean(&positions),
-                cylinders_radius(&samples),
+                frusta::radius(&samples),
             )
         };
         Self {
@@ -114,6 +120,9 @@ impl Soma {
             return Vec::new();
         }
         let positions: Vec<DVec3> = self.samples.iter().map(|s| s.position.as_dvec3()).collect();
+        if let Some(Marks::Outline(outline)) = Marks::of(&self.samples, &positions) {
+            return vec![outline];
+        }
         let mut outlines = blocks(&self.samples, &positions);
         if outlines.iter().all(|outline| outline.len() < 3) {
             // Without thickness, and linked in another way.
@@ -122,6 +131,17 @@ impl Soma {
         }
         outlines.retain(|outline| encloses(outline, TRACED_BULGE).is_some());
         outlines
+    }
+
+    /// Whether it was traced by samples one after another.
+    pub(crate) fn is_chain(&self) -> bool {
+        frusta::is_chain(&self.samples)
+    }
+
+    /// Whether samples of it have no radius of their own, and are no balls or frusta: see [`marks`].
+    pub(crate) fn is_marked(&self) -> bool {
+        let positions: Vec<DVec3> = self.samples.iter().map(|s| s.position.as_dvec3()).collect();
+        Marks::of(&self.samples, &positions).is_some()
     }
 
     /// The first sample that two others hang on, if any.
@@ -135,14 +155,25 @@ impl Soma {
 /// without caps.
 pub fn soma_area_volume(soma: &Soma) -> (f64, f64) {
     if soma.kind == SomaKind::Cylinders {
-        let links = || links(&soma.samples);
-        return (
-            links().map(|(a, b)| area(a, b)).sum(),
-            links().map(|(a, b)| volume(a, b)).sum(),
-        );
+        return frusta::area_volume(&soma.samples);
     }
     let r = f64::from(soma.radius).max(0.0);
     (4.0 * PI * r * r, 4.0 / 3.0 * PI * r * r * r)
+}
+
+/// Kind, center and radius of samples of which only one has a radius of its own.
+fn marked(samples: &[SomaSample], positions: &[DVec3]) -> Option<(SomaKind, DVec3, f64)> {
+    Some(match Marks::of(samples, positions)? {
+        Marks::Outline(outline) => {
+            let (center, radius) = flat_outline(&outline)?;
+            (SomaKind::Contour, center, radius)
+        }
+        Marks::Surface(center, radius) => (SomaKind::Surface, center, radius),
+        Marks::LeftOut(middle) => {
+            let radius = f64::from(samples[middle].radius);
+            (SomaKind::Point, positions[middle], radius)
+        }
+    })
 }
 
 /// Samples in a row, divided where z jumps.
@@ -334,38 +365,6 @@ fn chain(samples: &[SomaSample]) -> Option<Vec<usize>> {
     let root = samples.iter().position(|s| s.parent.is_none());
     let chain: Vec<usize> = std::iter::successors(root, |&i| next[i]).collect();
     (chain.len() == samples.len()).then_some(chain)
-}
-
-/// Radius of the sphere with the area of the frusta and of the ends' faces; where they have none, the thickest sample's.
-fn cylinders_radius(samples: &[SomaSample]) -> f64 {
-    let lateral: f64 = links(samples).map(|(a, b)| area(a, b)).sum();
-    if lateral > 0.0 {
-        let counts = child_counts(samples);
-        let linked = |i: usize| counts[i] + u32::from(samples[i].parent.is_some());
-        let ends = (0..samples.len()).filter(|&i| linked(i) == 1);
-        let face = |i: usize| PI * f64::from(samples[i].radius.max(0.0)).powi(2);
-        return ((lateral + ends.map(face).sum::<f64>()) / 4.0 / PI).sqrt();
-    }
-    samples
-        .iter()
-        .map(|s| f64::from(s.radius))
-        .fold(0.0, f64::max)
-}
-
-fn links(samples: &[SomaSample]) -> impl Iterator<Item = (&SomaSample, &SomaSample)> {
-    samples
-        .iter()
-        .filter_map(|s| Some((&samples[s.parent? as usize], s)))
-}
-
-fn area(a: &SomaSample, b: &SomaSample) -> f64 {
-    let length = a.position.as_dvec3().distance(b.position.as_dvec3());
-    crate::frustum::frustum_area(a.radius, b.radius, length)
-}
-
-fn volume(a: &SomaSample, b: &SomaSample) -> f64 {
-    let length = a.position.as_dvec3().distance(b.position.as_dvec3());
-    crate::frustum::frustum_volume(a.radius, b.radius, length)
 }
 
 #[cfg(test)]

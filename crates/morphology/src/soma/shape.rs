@@ -7,7 +7,8 @@
 //! | one sample, three points | the sphere |
 //! | one outline | circular cross-sections along its long axis, as NEURON reads it: [`outline`](super::outline) |
 //! | outlines in a stack | the loft through all of them, with round caps: [`stack`](super::stack) |
-//! | cylinders | the union of round cones: [`cones`](super::cones) |
+//! | cylinders | the union of their frusta, with half-depth ends: [`cones`](super::cones); a short chain stands for a ball |
+//! | samples on its surface | the sphere of their mean distance |
 //! | a mesh beside the tracing | its own distances: [`triangles`](super::triangles) |
 //!
 //! Where a body is not star-shaped about any of its points, r is the outermost crossing; of cylinders this is told
@@ -19,12 +20,14 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::cones::Cones;
+use super::cones::{Cones, Ends};
 use super::directions::Directions;
+use super::frusta::short_chain;
 use super::outline::Outline;
+use super::soma_area_volume;
 use super::stack::Stack;
 use super::triangles::{Hidden, SomaMeshError, Triangles};
-use crate::{Soma, SomaKind};
+use crate::{Soma, SomaKind, SomaSample};
 
 /// A soma's surface as it was traced: its distance from a center in each direction. µm, relative to the
 /// morphology's origin.
@@ -59,16 +62,30 @@ impl SomaShape {
     /// The shape of a soma; that of one without extent is a sphere of radius 0.
     pub fn of(soma: &Soma) -> Self {
         let body = match soma.kind {
-            SomaKind::Point | SomaKind::ThreePoint => None,
+            SomaKind::Point | SomaKind::ThreePoint | SomaKind::Surface => None,
             SomaKind::Contour => of_outlines(soma),
-            SomaKind::Cylinders => {
-                Cones::new(&soma.samples).map(|(center, cones)| (center, Body::Cones(cones)))
-            }
+            SomaKind::Cylinders => match short_chain(&soma.samples) {
+                Some(_) => None,
+                None => Cones::new(&soma.samples, Ends::HalfDepth)
+                    .map(|(center, cones)| (center, Body::Cones(cones))),
+            },
         };
-        match body {
+        let mut shape = match body {
             Some((center, body)) => Self::new(center, body),
-            None => Self::sphere(soma.center.as_dvec3(), f64::from(soma.radius)),
+            None => return Self::sphere(soma.center.as_dvec3(), f64::from(soma.radius)),
+        };
+        if soma.kind == SomaKind::Cylinders && soma.is_chain() {
+            // Sums over directions miss a little of what is long.
+            shape.volume = soma_area_volume(soma).1;
         }
+        shape
+    }
+
+    /// The union of the frusta of linked samples, with flat faces where branches go on: a hub of thick branches. None of
+    /// samples without extent.
+    pub fn of_hub(samples: &[SomaSample]) -> Option<Self> {
+        let (center, cones) = Cones::new(samples, Ends::Flat)?;
+        Some(Self::new(center, Body::Cones(cones)))
     }
 
     /// A sphere.

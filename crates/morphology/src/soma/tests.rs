@@ -29,11 +29,79 @@ fn three_points_in_a_row_are_cylinders() {
     let soma = soma(&[
         (0., 0., 0., 5., None),
         (0., 5., 0., 5., Some(0)),
-        (0., 9., 0., 5., Some(1)),
+        (0., 11., 0., 5., Some(1)),
     ]);
     assert_eq!(soma.kind, SomaKind::Cylinders);
-    // Sides of 90 π and two faces of 25 π.
-    assert!((soma.radius - (140.0_f32 / 4.0).sqrt()).abs() < 1e-5);
+    // Sides of 110 π and two faces of 25 π.
+    assert!((soma.radius - (160.0_f32 / 4.0).sqrt()).abs() < 1e-5);
+}
+
+/// The samples of `a1_soma_profile.swc`: one in the middle, and `count` others at this distance with one radius.
+fn marked(middle: f32, distance: f64, radius: f32, count: u32, flat: bool, in_a_row: bool) -> Soma {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let place = |i: u32| {
+        let height = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(count);
+        let [height, turn] = match flat {
+            true => [0.0, 2.0 * PI * f64::from(i) / f64::from(count)],
+            false => [height, golden * f64::from(i)],
+        };
+        let width = (1.0 - height * height).sqrt();
+        distance * DVec3::new(width * turn.cos(), width * turn.sin(), height)
+    };
+    let sample = |i: u32| SomaSample {
+        id: i64::from(i) + 1,
+        position: match i.checked_sub(1) {
+            None => Vec3::ZERO,
+            Some(mark) => place(mark).as_vec3(),
+        },
+        radius: if i == 0 { middle } else { radius },
+        parent: i
+            .checked_sub(1)
+            .map(|before| if in_a_row { before } else { 0 }),
+    };
+    Soma::from_samples((0..=count).map(sample).collect())
+}
+
+/// Fault C4.
+#[test]
+fn samples_without_a_radius_of_their_own_are_a_surface_or_an_outline() {
+    for (radius, count) in [(1.0, 24), (0.0, 24), (0.5, 9), (-1.0, 12), (6.0, 30)] {
+        let soma = marked(6.0, 6.5, radius, count, false, false);
+        assert_eq!(soma.kind, SomaKind::Surface, "{radius}");
+        assert!(
+            (soma.radius - 6.5).abs() < 1e-5,
+            "{radius}: {}",
+            soma.radius
+        );
+        let (area, _) = soma_area_volume(&soma);
+        assert!((area - 530.9).abs() < 0.1, "{area}");
+        assert!(SomaShape::of(&soma).is_sphere());
+    }
+    for in_a_row in [false, true] {
+        let soma = marked(6.0, 6.5, 1.0, 24, true, in_a_row);
+        assert_eq!(soma.kind, SomaKind::Contour);
+        assert!((soma.radius - 6.5).abs() < 0.05, "{}", soma.radius);
+        assert_eq!(soma.outlines()[0].len(), 24);
+    }
+}
+
+#[test]
+fn samples_without_a_radius_to_one_side_are_left_out() {
+    let mut samples = vec![(0., 0., 0., 6.0, None)];
+    samples.extend((0..5_u8).map(|i| {
+        (
+            5.0 + 0.5 * f32::from(i),
+            2.0,
+            0.1 * f32::from(i),
+            1.0,
+            Some(0),
+        )
+    }));
+    let soma = soma(&samples);
+    assert_eq!(
+        (soma.kind, soma.radius, soma.center),
+        (SomaKind::Point, 6.0, Vec3::ZERO)
+    );
 }
 
 #[test]

@@ -117,27 +117,100 @@ fn a_stack_keeps_every_outline_and_has_round_caps() {
 }
 
 #[test]
-fn cylinders_are_the_union_of_their_round_cones() {
-    let rows = [([0., 0., 0.], 5.0, None), ([0., 0., 8.], 5.0, Some(0))];
+fn long_chains_have_the_volume_of_their_frusta_and_half_depth_ends() {
+    let rows = [([0., 0., 0.], 5.0, None), ([0., 0., 24.], 5.0, Some(0))];
     let shape = SomaShape::of(&Soma::from_samples(samples(&rows)));
-    let volume = PI * 25.0 * 8.0 + 4.0 / 3.0 * PI * 125.0;
+    let volume = PI * 25.0 * 24.0;
     assert!(
-        (shape.volume() / volume - 1.0).abs() < 5e-3,
+        (shape.volume() / volume - 1.0).abs() < 1e-9,
         "{}",
         shape.volume()
     );
-    assert!((shape.distance(DVec3::Z) - 9.0).abs() < 1e-9);
+    // A third of a radius is cut off, and half of one stands for it.
+    let end = 12.0 + 5.0 / 6.0;
+    assert!((shape.distance(DVec3::Z) - end).abs() < 1e-9);
     assert!((shape.distance(DVec3::X) - 5.0).abs() < 1e-9);
     assert!(!shape.is_like_neurite());
-    // A cone: its side touches both balls.
-    let rows = [([0., 0., 0.], 6.0, None), ([0., 0., 10.], 2.0, Some(0))];
+    // A cone: its side is straight from sample to sample.
+    let rows = [([0., 0., 0.], 6.0, None), ([0., 0., 14.], 3.0, Some(0))];
     let shape = SomaShape::of(&Soma::from_samples(samples(&rows)));
     let place = shape.center() + DVec3::X * shape.distance(DVec3::X);
-    let (sine, cosine) = (0.4, 0.84_f64.sqrt());
     assert!(
-        (place.x * cosine + place.z * sine - 6.0).abs() < 1e-9,
+        (place.x - (6.0 - 3.0 * place.z / 14.0)).abs() < 1e-9,
         "{place}"
     );
+    let volume = PI * 14.0 / 3.0 * (36.0 + 18.0 + 9.0);
+    assert!(
+        (shape.volume() / volume - 1.0).abs() < 1e-9,
+        "{}",
+        shape.volume()
+    );
+    let (summed, _) = {
+        let directions = Directions::new(24);
+        let distances: Vec<f64> = directions
+            .units
+            .iter()
+            .map(|&unit| shape.distance(unit))
+            .collect();
+        directions.volume_and_area(&distances)
+    };
+    assert!((summed / volume - 1.0).abs() < 0.01, "{summed} of {volume}");
+}
+
+/// Fault C1: the usual stylized soma, as long as it is wide, in two samples, in three, and with its root in the middle.
+#[test]
+fn a_chain_no_longer_than_it_is_wide_stands_for_a_ball() {
+    let ends = [([-10., 0., 0.], 10.0, None), ([10., 0., 0.], 10.0, Some(0))];
+    let in_a_row = [
+        ([-10., 0., 0.], 10.0, None),
+        ([0., 0., 0.], 10.0, Some(0)),
+        ([10., 0., 0.], 10.0, Some(1)),
+    ];
+    // Not quite the three points of NeuroMorpho.Org.
+    let around = [
+        ([0., 0., 0.], 10.0, None),
+        ([0., -10.3, 0.], 10.0, Some(0)),
+        ([0., 10.3, 0.], 10.0, Some(0)),
+    ];
+    for rows in [&ends[..], &in_a_row, &around] {
+        let soma = Soma::from_samples(samples(rows));
+        let shape = SomaShape::of(&soma);
+        assert!(
+            shape.is_sphere() && (soma.radius - 10.0).abs() < 1e-3,
+            "{rows:?}"
+        );
+        assert!((shape.volume() - 4188.79).abs() < 1.0, "{}", shape.volume());
+        assert!(shape.area() < 1260.0, "{}", shape.area());
+    }
+    // A disk is no thicker than it has area.
+    let disk = [([0., 0., 0.], 10.0, None), ([0., 0., 4.], 10.0, Some(0))];
+    let shape = SomaShape::of(&Soma::from_samples(samples(&disk)));
+    assert!(shape.is_sphere() && (shape.radius() - 8.366).abs() < 1e-3);
+}
+
+/// A ball in slices is that ball, whatever their number.
+#[test]
+fn the_slices_of_a_ball_are_a_ball() {
+    let rows: Vec<_> = (0..21_u32)
+        .map(|i| {
+            let x = f64::from(i) - 10.0;
+            let radius = (100.0 - x * x).sqrt();
+            ([x as f32, 0., 0.], radius as f32, i.checked_sub(1))
+        })
+        .collect();
+    let shape = SomaShape::of(&Soma::from_samples(samples(&rows)));
+    assert!(
+        (shape.volume() / 4188.79 - 1.0).abs() < 0.01,
+        "{}",
+        shape.volume()
+    );
+    for direction in Directions::new(5).units {
+        let distance = shape.distance(direction);
+        assert!(
+            (distance / 10.0 - 1.0).abs() < 0.03,
+            "{direction}: {distance}"
+        );
+    }
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn lines(soma: &Soma, across: [DVec3; 2]) -> Vec<Vec<DVec3>> {
         SomaKind::Cylinders => (soma.samples.iter())
             .map(|sample| circle(sample.position.as_dvec3(), sample.radius.into()))
             .collect(),
-        SomaKind::Point | SomaKind::ThreePoint | SomaKind::Contour => {
+        SomaKind::Point | SomaKind::ThreePoint | SomaKind::Contour | SomaKind::Surface => {
             vec![circle(soma.center.as_dvec3(), soma.radius.into())]
         }
     }
