@@ -24,14 +24,15 @@ pub use warning::Warning;
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
-use neurotess_mesh::{CoarseMesh, Role, Vertex};
+use neurotess_mesh::{CoarseMesh, Role, SectionNumber, SwcType, Vertex};
 use neurotess_morphology::{Morphology, Soma};
 
 use soma::first_rings::RingRequests;
-use soma::{near_forks, stems};
+use soma::hubs::{self, Hub};
+use soma::{near_forks, stems, stubs};
 use stop::Stop;
-use tracing::{Skeleton, coordinates, mend, separate, smooth, thin};
-use tubes::Somata;
+use tracing::{Skeleton, coordinates, mend, repeated, separate, smooth, soma_ends, thin};
+use tubes::{SomaLabel, Somata};
 use warning::Warnings;
 
 /// A coarse mesh and what there is to say about it.
@@ -60,10 +61,10 @@ pub struct SomaReport {
     pub volume: f64,
     /// Area (µm²) of the soma's refined surface without what neurites take.
     pub area: f64,
-    /// Volume (µm³) as traced: of the sphere, the outlines' body or the union of cones, times the cube of
-    /// [`GenerateOptions::soma_scale`].
+    /// Volume (µm³) as traced: of the sphere, the outlines' body or the frusta, times the cube of
+    /// [`GenerateOptions::soma_scale`], and of what was traced of neurites between there and their first rings.
     pub traced_volume: f64,
-    /// Area (µm²) as traced.
+    /// Area (µm²) as traced, without neurites.
     pub traced_area: f64,
 }
 
@@ -155,9 +156,14 @@ fn labeled(
     mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
     mend::thicken(&mut skeleton, options.least_radius, &mut warnings);
     coordinates::check(morphology, &skeleton, &mut warnings)?;
+    soma_ends::finish(&mut skeleton);
     mend::merge_coincident(&mut skeleton, &mut warnings);
+    repeated::leave_out(&mut skeleton, &mut warnings);
     let mut soma_spheres =
         soma::soma_spheres(morphology, &skeleton, &as_neurites, options, &mut warnings);
+    let hubs = hubs::find(&mut skeleton, &mut soma_spheres, options, &mut warnings);
+    let labels = labels(morphology, &hubs);
+    stubs::measure(&skeleton, &mut soma_spheres, options);
     near_forks::part(
         &mut skeleton,
         &soma_spheres,
@@ -196,7 +202,10 @@ fn labeled(
         Crossings::Separate => Some(separate::separate(
             &mut skeleton,
             &soma_spheres,
-            &first_samples(morphology),
+            &labels
+                .iter()
+                .map(|label| label.sample)
+                .collect::<Vec<i64>>(),
             &mut warnings,
             stop,
         )),
@@ -207,7 +216,7 @@ fn labeled(
         separated.is_none_or(|separated| separated.clearance.allows(from, to))
     };
     let somata = Somata {
-        morphology,
+        labels: &labels,
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
@@ -242,13 +251,22 @@ fn tell_traced_radii(mesh: &mut CoarseMesh, polygons: Polygons) {
     }
 }
 
-/// The label of each soma's first sample; −1 without one.
-fn first_samples(morphology: &Morphology) -> Vec<i64> {
-    let labels = morphology.sample_labels();
-    let somata = morphology.somata.iter().enumerate();
-    let first = |(index, soma): (usize, &Soma)| match soma.samples.is_empty() {
-        true => -1,
-        false => i64::from(labels.of_soma(index, 0)),
+/// What the surfaces of somata are labeled as, those of hubs after all others.
+fn labels(morphology: &Morphology, hubs: &[Hub]) -> Vec<SomaLabel> {
+    let numbers = morphology.sample_labels();
+    let of_soma = |(index, soma): (usize, &Soma)| SomaLabel {
+        sample: match soma.samples.is_empty() {
+            true => -1,
+            false => numbers.of_soma(index, 0).into(),
+        },
+        kind: SwcType::SOMA,
+        section: SectionNumber::SOMA,
     };
-    somata.map(first).collect()
+    let of_hub = |hub: &Hub| SomaLabel {
+        sample: hub.node.sample,
+        kind: hub.node.kind,
+        section: hub.node.section,
+    };
+    let somata = morphology.somata.iter().enumerate().map(of_soma);
+    somata.chain(hubs.iter().map(of_hub)).collect()
 }

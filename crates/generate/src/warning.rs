@@ -3,7 +3,8 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 39] = [
+pub(crate) const CODES: [&str; 41] = [
+    "branch_repeated",
     "branches_separated",
     "branches_touch",
     "buried_twig",
@@ -18,6 +19,7 @@ pub(crate) const CODES: [&str; 39] = [
     "fork_split",
     "fork_thickened",
     "insertion_quad_far",
+    "hub",
     "inside_soma",
     "long_sample_numbers",
     "near_fork",

@@ -11,6 +11,7 @@ use super::measure::{Coarse, Extent};
 use super::pull::Pull;
 use super::soma_surface::{SomaRequest, SomaSurface};
 use super::sphere::Sphere;
+use super::stubs;
 use crate::{SomaKeep, SomaMethod};
 
 /// All that a surface of some size follows from.
@@ -36,10 +37,17 @@ const EXACT: f64 = 5e-4;
 /// Sizes that are tried of what grows in all directions: beyond, rings would hold the surface far from where it was traced.
 const SIZES: [f64; 2] = [0.7, 1.3];
 
+/// Volume (µm³) of what was traced up to these first rings, neurites included, and area (µm²) of the soma.
+pub(super) fn traced(request: &SomaRequest<'_>, insertions: &[Insertion]) -> (f64, f64) {
+    let (volume, area) = request.soma.traced();
+    let of_neurites = stubs::up_to_rings(request.soma.stubs(), insertions);
+    (volume + of_neurites, area)
+}
+
 impl Draft<'_> {
     /// The surface of the size that keeps what is asked for, and the size.
     pub(super) fn fitting(&self) -> (f64, SomaSurface) {
-        let (volume, area) = self.request.soma.traced();
+        let (volume, area) = traced(self.request, self.insertions);
         let elastic = self.request.method == SomaMethod::Fem;
         let kept = |extent: &Extent| match self.request.keep {
             SomaKeep::Scale => 1.0,

@@ -116,7 +116,7 @@ fn hidden_from_center(hidden: Hidden) -> String {
 
 /// Farthest first ring of an elastic soma, in radii: beyond, the pull inverts tetrahedra. Chosen by
 /// eye among 1.2 to 1.6: farther ones look like stars.
-const FEM_REACH: f64 = 1.35;
+pub(super) const FEM_REACH: f64 = 1.35;
 /// LiveMesh's: the tube has its own radius from 1.5 R on.
 const PROFILE_REACH: f64 = 1.5;
 

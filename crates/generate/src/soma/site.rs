@@ -21,7 +21,7 @@ const SOMA_LIFT: f64 = 0.4;
 const HILLOCK: [f64; 2] = [2.0, 1.0];
 const THICK: f64 = 0.3;
 /// Greatest height of a hillock in radii of the soma: neurites may be thicker than their soma.
-const HIGHEST: f64 = 0.35;
+pub(super) const HIGHEST: f64 = 0.35;
 /// A path that turns back towards the soma ends a ring's way: least cosine to the ray.
 const MIN_OUTWARDS: f64 = 0.5;
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
+use crate::soma::draft;
 use crate::soma::first_rings::{self, PlacedRing, RingRequests};
 use crate::soma::insertion_quads::Insertion;
 use crate::soma::soma_surface::{ATTEMPTS, SomaRequest, SomaSurface};
@@ -187,7 +188,7 @@ fn build_one(
     };
     let mut surface = surface::rebuild(&request, &insertions);
     move_rings(skeleton, &mut surface, rings, soma_sphere);
-    let (traced_volume, traced_area) = soma_sphere.traced();
+    let (traced_volume, traced_area) = draft::traced(&request, &surface.insertions);
     let report = SomaReport {
         volume: surface.extent.volume,
         area: surface.extent.area,

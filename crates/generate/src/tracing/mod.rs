@@ -3,9 +3,11 @@
 
 pub(crate) mod coordinates;
 pub(crate) mod mend;
+pub(crate) mod repeated;
 pub(crate) mod separate;
 mod skeleton;
 pub(crate) mod smooth;
+pub(crate) mod soma_ends;
 mod soma_sphere;
 pub(crate) mod thin;
 

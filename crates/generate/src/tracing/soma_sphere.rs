@@ -20,6 +20,8 @@ pub(crate) struct SomaSphere {
     hillocks: f64,
     /// Centers of first rings, with the normals of their planes.
     rings: Vec<[DVec3; 2]>,
+    /// Parts of neurites outside: places about the center, and volumes (µm³).
+    stubs: Vec<(DVec3, f64)>,
 }
 
 impl SomaSphere {
@@ -32,6 +34,7 @@ impl SomaSphere {
             farthest: scale * shape.farthest(),
             hillocks: 1.0,
             rings: Vec::new(),
+            stubs: Vec::new(),
             shape,
             scale,
         }
@@ -40,7 +43,10 @@ impl SomaSphere {
     /// The sphere of the same volume.
     pub(crate) fn rounded(&self, reach: f64) -> Self {
         let sphere = SomaShape::sphere(self.center, self.radius);
-        Self::new(Arc::new(sphere), 1.0, reach)
+        Self {
+            stubs: self.stubs.clone(),
+            ..Self::new(Arc::new(sphere), 1.0, reach)
+        }
     }
 
     /// Distance of the surface from the center along a unit direction.
@@ -83,6 +89,16 @@ impl SomaSphere {
         self.rings = rings;
     }
 
+    /// Says what was traced of neurites next to it: places about the center, and volumes (µm³).
+    pub(crate) fn set_stubs(&mut self, stubs: Vec<(DVec3, f64)>) {
+        self.stubs = stubs;
+    }
+
+    /// What was traced of neurites next to it.
+    pub(crate) fn stubs(&self) -> &[(DVec3, f64)] {
+        &self.stubs
+    }
+
     /// Unit normal of the plane of the first ring with this center, away from the soma.
     pub(crate) fn axis(&self, ring: DVec3) -> DVec3 {
         let off = |[center, _]: &&[DVec3; 2]| center.distance_squared(ring);
@@ -101,7 +117,7 @@ impl SomaSphere {
         self.shape.is_sphere()
     }
 
-    /// Volume (µm³) and area (µm²) as traced.
+    /// Volume (µm³) and area (µm²) as traced, without neurites.
     pub(crate) fn traced(&self) -> (f64, f64) {
         let square = self.scale * self.scale;
         (

@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SampleId, TracingPoint, Vertex};
-use neurotess_morphology::Morphology;
+use neurotess_mesh::{
+    CoarseMesh, Patch, PatchKind, Role, SampleId, SectionNumber, SwcType, TracingPoint, Vertex,
+};
 
 use super::normals::average_normals;
 use crate::plan::{Joint, JointShape, Label, Origin, PathEnd, Plan, PlannedRing};
@@ -19,11 +20,20 @@ use crate::tracing::SomaSphere;
 /// Four vertices, counter-clockwise about the path's direction.
 pub(super) type Ring = [u32; 4];
 
-/// The somata of a cell, as many as the morphology has.
+/// The somata of a cell: as many as the morphology has, and then hubs.
 pub(crate) struct Somata<'a> {
-    pub(crate) morphology: &'a Morphology,
+    /// What the surface of each is labeled as.
+    pub(crate) labels: &'a [SomaLabel],
     pub(crate) soma_spheres: &'a [Option<SomaSphere>],
     pub(crate) surfaces: &'a [Option<BuiltSoma>],
+}
+
+/// What the surface of a soma is labeled as.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SomaLabel {
+    pub(crate) sample: i64,
+    pub(crate) kind: SwcType,
+    pub(crate) section: SectionNumber,
 }
 
 /// A mesh, and what became of the forks.

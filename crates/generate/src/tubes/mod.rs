@@ -10,6 +10,6 @@ mod soma;
 mod taper;
 mod twist;
 
-pub(crate) use assembly::{Somata, Tubes, tubes};
+pub(crate) use assembly::{SomaLabel, Somata, Tubes, tubes};
 pub(crate) use normals::average_normals;
 pub(crate) use taper::{Straight, taper};

@@ -1,9 +1,9 @@
 //! Somata in the mesh: their surfaces, and the rings that neurites begin with.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{Patch, PatchKind, Role, SectionNumber, SwcType, TracingPoint, Vertex};
+use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint, Vertex};
 
-use super::assembly::{Assembly, Somata, sample_id};
+use super::assembly::{Assembly, SomaLabel, Somata, sample_id};
 use crate::plan::PathEnd;
 use crate::soma::{SomaSurface, collar};
 
@@ -11,14 +11,10 @@ impl Assembly<'_> {
     /// Adds all somata.
     pub(super) fn add_somata(&mut self, somata: &Somata<'_>) {
         let stems = self.stems(somata.surfaces.len());
-        let labels = somata.morphology.sample_labels();
         for (index, (soma, stems)) in somata.surfaces.iter().zip(stems).enumerate() {
             if let (Some(soma), Some(soma_sphere)) = (soma, &somata.soma_spheres[index]) {
-                let sample = match somata.morphology.somata[index].samples.is_empty() {
-                    true => -1,
-                    false => labels.of_soma(index, 0).into(),
-                };
-                self.add_soma(&soma.surface, soma_sphere.center, sample, &stems);
+                let label = somata.labels[index];
+                self.add_soma(&soma.surface, soma_sphere.center, label, &stems);
             }
         }
     }
@@ -35,7 +31,7 @@ impl Assembly<'_> {
     }
 
     /// Adds a soma; `stems`: the paths that begin on its rings, in order.
-    fn add_soma(&mut self, surface: &SomaSurface, center: DVec3, sample: i64, stems: &[u32]) {
+    fn add_soma(&mut self, surface: &SomaSurface, center: DVec3, label: SomaLabel, stems: &[u32]) {
         // Each vertex of a ring belongs to the tracing point of its neurite, all others to one of their own.
         let mut owner = vec![None; surface.vertices.len()];
         let rings = surface.rings.iter().zip(&surface.insertions);
@@ -62,9 +58,9 @@ impl Assembly<'_> {
                     role: Role::Soma,
                     collar: 0.0,
                     taper: 0.0,
-                    kind: SwcType::SOMA,
-                    sample: sample_id(sample),
-                    section: SectionNumber::SOMA,
+                    kind: label.kind,
+                    sample: sample_id(label.sample),
+                    section: label.section,
                 });
                 self.mesh.tracing.len() as u32 - 1
             });

@@ -3,6 +3,7 @@
 mod branches;
 mod forks;
 mod growth;
+mod hubs;
 mod limits;
 mod near_somata;
 mod rings;

@@ -1,6 +1,6 @@
 //! Directions all around a point, and what distances along them enclose.
 
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 
 use glam::{DMat3, DVec3};
 
@@ -87,5 +87,56 @@ impl Directions {
             let normal = (b - a).cross(c - a);
             (volume + a.dot(normal) / 6.0, area + 0.5 * normal.length())
         })
+    }
+}
+
+/// Distances along the directions of a grid, bilinear in between.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ByDirection {
+    /// Quads along an edge of the cube.
+    count: u32,
+    distances: Vec<f64>,
+}
+
+impl ByDirection {
+    /// Distances in the order of [`Directions::new`] of the same count.
+    pub(super) fn new(count: u32, distances: Vec<f64>) -> Self {
+        Self { count, distances }
+    }
+
+    /// A smooth distance: in each direction the mean of the logarithms around it, with weights that fall off within so many
+    /// radians as a bell does.
+    pub(super) fn smoothed(count: u32, width: f64, distance: impl Fn(DVec3) -> f64) -> Self {
+        let units = Directions::new(count).units;
+        let logarithms: Vec<f64> = units.iter().map(|&unit| distance(unit).ln()).collect();
+        let least = (3.0 * width).cos();
+        let mean = |unit: &DVec3| {
+            let mut sums = [0.0; 2];
+            for (other, logarithm) in units.iter().zip(&logarithms) {
+                let cosine = unit.dot(*other);
+                if cosine > least {
+                    let weight = ((cosine - 1.0) / (width * width)).exp();
+                    sums = [sums[0] + weight * logarithm, sums[1] + weight];
+                }
+            }
+            (sums[0] / sums[1]).exp()
+        };
+        Self::new(count, units.iter().map(mean).collect())
+    }
+
+    /// The distance in a unit direction.
+    pub(super) fn at(&self, direction: DVec3) -> f64 {
+        let (face, place) = place_on_cube(direction);
+        let side = self.count as usize + 1;
+        let cell = |x: f64| {
+            let x = (0.5 + x.atan() * FRAC_2_PI) * f64::from(self.count);
+            let cell = (x as usize).min(side - 2);
+            (cell, x - cell as f64)
+        };
+        let [(i, x), (j, y)] = place.map(cell);
+        let at = |i: usize, j: usize| self.distances[(face * side + i) * side + j];
+        let near = at(i, j) * (1.0 - y) + at(i, j + 1) * y;
+        let far = at(i + 1, j) * (1.0 - y) + at(i + 1, j + 1) * y;
+        near * (1.0 - x) + far * x
     }
 }

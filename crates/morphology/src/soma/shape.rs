@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec3};
 
 use super::cones::{Cones, Ends};
-use super::directions::Directions;
+use super::directions::{ByDirection, Directions};
 use super::frusta::short_chain;
 use super::outline::Outline;
 use super::soma_area_volume;
@@ -48,12 +48,17 @@ enum Body {
     Outline(Box<Outline>),
     Stack(Stack),
     Cones(Cones),
+    /// Frusta that fork, made smooth: where faces meet at the fork are edges that nothing in a soma is like.
+    Forked(Cones, ByDirection),
     Triangles(Triangles),
 }
 
 /// Directions by whose distances volume and area are summed, along an edge of a cube: 864 hold the volume of an ellipsoid
 /// of 3 : 1 : 1 to 0.1 %.
 const SUMMED: u32 = 12;
+/// Directions along an edge of a cube of frusta that fork, and the angle (radians) within which they are made smooth. By eye.
+const SMOOTHED: u32 = 16;
+const ROUNDED: f64 = 0.2;
 /// Farthest over nearest distance from the center beyond which cylinders are a thick neurite: sampled by direction, what is
 /// longer has too few samples at its ends. By eye, on capsules of 2 to 8 radii.
 const LONGEST: f64 = 4.0;
@@ -66,8 +71,12 @@ impl SomaShape {
             SomaKind::Contour => of_outlines(soma),
             SomaKind::Cylinders => match short_chain(&soma.samples) {
                 Some(_) => None,
-                None => Cones::new(&soma.samples, Ends::HalfDepth)
-                    .map(|(center, cones)| (center, Body::Cones(cones))),
+                None => match Cones::new(&soma.samples, Ends::HalfDepth) {
+                    Some((center, cones)) if !soma.is_chain() => {
+                        return Self::forked(center, cones);
+                    }
+                    body => body.map(|(center, cones)| (center, Body::Cones(cones))),
+                },
             },
         };
         let mut shape = match body {
@@ -85,7 +94,16 @@ impl SomaShape {
     /// samples without extent.
     pub fn of_hub(samples: &[SomaSample]) -> Option<Self> {
         let (center, cones) = Cones::new(samples, Ends::Flat)?;
-        Some(Self::new(center, Body::Cones(cones)))
+        Some(Self::forked(center, cones))
+    }
+
+    /// Frusta that fork: a smooth body with their volume.
+    fn forked(center: DVec3, cones: Cones) -> Self {
+        let smooth = ByDirection::smoothed(SMOOTHED, ROUNDED, |unit| cones.distance(center, unit));
+        let exact = Self::new(center, Body::Cones(cones.clone()));
+        let mut shape = Self::new(center, Body::Forked(cones, smooth));
+        shape.volume = exact.volume;
+        shape
     }
 
     /// A sphere.
@@ -185,7 +203,11 @@ impl SomaShape {
     pub fn grows_by(&self) -> f64 {
         match self.body {
             Body::Outline(_) => 1.0,
-            Body::Sphere(_) | Body::Stack(_) | Body::Cones(_) | Body::Triangles(_) => 3.0,
+            Body::Sphere(_)
+            | Body::Stack(_)
+            | Body::Cones(_)
+            | Body::Forked(..)
+            | Body::Triangles(_) => 3.0,
         }
     }
 
@@ -206,6 +228,7 @@ impl SomaShape {
             Body::Outline(outline) => outline.distance(direction),
             Body::Stack(stack) => stack.distance(direction),
             Body::Cones(cones) => cones.distance(self.center, direction),
+            Body::Forked(_, smooth) => smooth.at(direction),
             Body::Triangles(triangles) => triangles.distance(direction),
         }
     }
@@ -213,11 +236,12 @@ impl SomaShape {
     /// Whether it was traced as a neurite is: cylinders along branches, around bends, or much longer than they are
     /// thick, of which no star about a point is a good picture.
     pub fn is_like_neurite(&self) -> bool {
-        let Body::Cones(cones) = &self.body else {
+        let (Body::Cones(cones) | Body::Forked(cones, _)) = &self.body else {
             return false;
         };
         let directions = Directions::new(SUMMED);
-        let distances = directions.units.iter().map(|&unit| self.distance(unit));
+        let distances = directions.units.iter();
+        let distances = distances.map(|&unit| cones.distance(self.center, unit));
         let (least, most) = distances.fold((f64::INFINITY, 0.0_f64), |(least, most), r| {
             (least.min(r), most.max(r))
         });

@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use glam::DVec3;
 
-use super::directions::{Directions, place_on_cube};
+use super::directions::{ByDirection, Directions, place_on_cube};
 
 /// Grid cells along an edge of the cube of directions.
 const CELLS: u32 = 44;
@@ -71,9 +71,7 @@ pub enum SomaMeshError {
 
 /// Distances by direction.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Triangles {
-    distances: Vec<f64>,
-}
+pub(super) struct Triangles(ByDirection);
 
 /// What was found along the rays of a surface.
 pub(super) struct Cast {
@@ -108,27 +106,14 @@ impl Triangles {
         let distances = directions.units.iter().zip(&crossings);
         Ok(Cast {
             center,
-            body: Self {
-                distances: distances.map(distance).collect(),
-            },
+            body: Self(ByDirection::new(CELLS, distances.map(distance).collect())),
             hidden,
         })
     }
 
     /// Distance of the surface along a unit direction.
     pub(super) fn distance(&self, direction: DVec3) -> f64 {
-        let (face, place) = place_on_cube(direction);
-        let side = CELLS as usize + 1;
-        let cell = |x: f64| {
-            let x = (0.5 + x.atan() * FRAC_2_PI) * f64::from(CELLS);
-            let cell = (x as usize).min(side - 2);
-            (cell, x - cell as f64)
-        };
-        let [(i, x), (j, y)] = place.map(cell);
-        let at = |i: usize, j: usize| self.distances[(face * side + i) * side + j];
-        let near = at(i, j) * (1.0 - y) + at(i, j + 1) * y;
-        let far = at(i + 1, j) * (1.0 - y) + at(i + 1, j + 1) * y;
-        near * (1.0 - x) + far * x
+        self.0.at(direction)
     }
 }
 
