@@ -100,6 +100,8 @@ pub struct ReadOptions {
     pub zero_for_bad_radii: bool,
     /// Warn of SWC that NEURON 9 refuses or reads as something else (`neuron_misreads`).
     pub for_neuron: bool,
+    /// The caller knows the unit of SWC and takes lengths to micrometers: one that the header names is told, not applied.
+    pub unit_given: bool,
 }
 
 /// What a file gave.

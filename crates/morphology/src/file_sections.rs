@@ -326,6 +326,6 @@ mod tests {
         assert_eq!(late.file_sections.of_points, [0, 1, 1, 2]);
         let sections = late.pieces_in_file_order();
         let order: Vec<u32> = sections.iter().map(|piece| piece.file_section).collect();
-        assert_eq!(order, [1, 0, 2]);
+        assert_eq!(order, [0, 1, 2]);
     }
 }

@@ -32,7 +32,7 @@ impl ReaderWarning {
 
     /// Whether the unit is likely not the micrometer.
     pub(crate) fn is_of_unit(&self) -> bool {
-        self.code == OF_UNIT
+        OF_UNIT.contains(&self.code)
     }
 
     /// As text: `FILE:LINE: message (code)`.
@@ -42,8 +42,8 @@ impl ReaderWarning {
     }
 }
 
-/// The code of a cell whose unit is likely not the micrometer.
-pub(crate) const OF_UNIT: &str = "too_large";
+/// Codes of a cell whose unit is likely not the micrometer.
+pub(crate) const OF_UNIT: [&str; 2] = ["too_large", "too_small"];
 
 impl From<formats::Warning> for ReaderWarning {
     fn from(warning: formats::Warning) -> Self {
@@ -53,9 +53,11 @@ impl From<formats::Warning> for ReaderWarning {
             mut message,
             count,
         } = warning;
-        if code == OF_UNIT {
-            message
-                .push_str(": neurotess convert --units nm or voxel=X,Y,Z makes micrometers of it");
+        if let Some(place) = OF_UNIT.iter().position(|&of_unit| of_unit == code) {
+            let options = ["--units nm or voxel=X,Y,Z", "--scale 1000"][place];
+            message.push_str(&format!(
+                ": neurotess convert {options} makes micrometers of it"
+            ));
         }
         Self {
             line,

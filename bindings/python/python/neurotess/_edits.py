@@ -139,6 +139,11 @@ def edit(
     else:
         known = Morphology(read_cell(cell, None, None, False, bad_radii=edits.mends_radii))
         _warn(known._cell)
+    if units not in (None, "um") and any(code == "units_in_header" for code, *_ in known._cell.warnings):
+        raise ValueError(
+            f"units= is given, and the unit that the header of {known.name} names was read already, so lengths are µm: "
+            "leave units= out, or give scale="
+        )
     edited, reports = edits.apply(known._cell, synapses)
     if known.connectors is not None and reports:
         lost = f"{known.name}: its connectors are left out, since samples may have other numbers and places now"

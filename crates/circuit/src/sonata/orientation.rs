@@ -3,7 +3,8 @@
 //! **Quaternions** `orientation_{w,x,y,z}` turn the morphology's axes to the circuit's. Real files
 //! have lengths from 0.95 to 1.59, so they are normalized. **Angles** `rotation_angle_{x,y,z}axis`
 //! (radians) turn about the circuit's z, then y, then x: R = Rx Ry Rz for column vectors; a missing
-//! one is zero. Where a file has both, quaternions win, as in bluepysnap. SONATA developer guide,
+//! one is zero. Each node goes by what its own group or type has; where that has both, quaternions win, as in bluepysnap (bmtk
+//! 1.2.0 reads angles alone). SONATA developer guide,
 //! "Representing nodes"; bluepysnap `NodePopulation.orientations`.
 
 use glam::DQuat;

@@ -85,45 +85,14 @@ fn is_rotation(name: &str) -> bool {
     QUATERNION.contains(&name) || ANGLES.contains(&name)
 }
 
+/// Each node by what its own group or type says: by its quaternion, or else by its angles.
 fn rotations(
     table: &Table,
     population: &mut Population,
     broken: &mut Broken,
     notes: &mut Notes,
 ) -> Result<(), CircuitError> {
-    let components = QUATERNION.map(|name| table.has(name));
-    if components.contains(&true) {
-        if let Some(missing) = components.iter().position(|there| !there) {
-            let key = format!("{}: {}", table.path(), QUATERNION[missing]);
-            return Err(CircuitError::new(
-                broken.file,
-                key,
-                Fault::PartialQuaternion,
-            ));
-        }
-        let columns = QUATERNION.map(|name| table.numbers(name).map(Option::unwrap_or_default));
-        let [w, x, y, z] = columns;
-        let columns = [w?, x?, y?, z?];
-        let (mut zero, mut not_finite) = (Vec::new(), Vec::new());
-        for (row, rotation) in population.rotations.iter_mut().enumerate() {
-            let q = [0, 1, 2, 3].map(|c: usize| columns[c][row]);
-            // A node of a group without orientations.
-            if q.iter().all(|c| c.is_nan()) {
-                continue;
-            }
-            match orientation::from_components(q) {
-                Some(unit) => *rotation = unit,
-                None if q == [0.0; 4] => zero.push((row, 0.0)),
-                None => {
-                    let value = q.into_iter().find(|c| !c.is_finite());
-                    not_finite.push((row, value.unwrap_or(f64::NAN)));
-                }
-            }
-        }
-        broken.mark(table.key(QUATERNION[0]), &zero, true, notes);
-        broken.mark(table.key(QUATERNION[0]), &not_finite, false, notes);
-        return Ok(());
-    }
+    let by_angles = quaternions(table, population, broken, notes)?;
     if !ANGLES.iter().any(|name| table.has(name)) {
         return Ok(());
     }
@@ -132,7 +101,8 @@ fn rotations(
     let [x, y, z] = columns;
     let columns = [x?, y?, z?].map(|column| column.unwrap_or_else(|| vec![0.0; n]));
     let mut faulty = Vec::new();
-    for (row, rotation) in population.rotations.iter_mut().enumerate() {
+    let rows = population.rotations.iter_mut().enumerate().zip(by_angles);
+    for ((row, rotation), _) in rows.filter(|(_, by_angles)| *by_angles) {
         // NaN is what no value reads as, so a missing angle and a NaN one are alike: zero.
         let angles = [0, 1, 2].map(|axis: usize| match columns[axis][row] {
             angle if angle.is_nan() => 0.0,
@@ -147,6 +117,51 @@ fn rotations(
     let key = table.key(named.unwrap_or(&ANGLES[0]));
     broken.mark(key, &faulty, false, notes);
     Ok(())
+}
+
+/// Turns nodes that have a quaternion, and tells which have none.
+fn quaternions(
+    table: &Table,
+    population: &mut Population,
+    broken: &mut Broken,
+    notes: &mut Notes,
+) -> Result<Vec<bool>, CircuitError> {
+    let components = QUATERNION.map(|name| table.has(name));
+    let mut without = vec![true; population.len()];
+    if !components.contains(&true) {
+        return Ok(without);
+    }
+    if let Some(missing) = components.iter().position(|there| !there) {
+        let key = format!("{}: {}", table.path(), QUATERNION[missing]);
+        return Err(CircuitError::new(
+            broken.file,
+            key,
+            Fault::PartialQuaternion,
+        ));
+    }
+    let columns = QUATERNION.map(|name| table.numbers(name).map(Option::unwrap_or_default));
+    let [w, x, y, z] = columns;
+    let columns = [w?, x?, y?, z?];
+    let (mut zero, mut not_finite) = (Vec::new(), Vec::new());
+    for (row, rotation) in population.rotations.iter_mut().enumerate() {
+        let q = [0, 1, 2, 3].map(|c: usize| columns[c][row]);
+        // A node of a group without orientations.
+        if q.iter().all(|c| c.is_nan()) {
+            continue;
+        }
+        without[row] = false;
+        match orientation::from_components(q) {
+            Some(unit) => *rotation = unit,
+            None if q == [0.0; 4] => zero.push((row, 0.0)),
+            None => {
+                let value = q.into_iter().find(|c| !c.is_finite());
+                not_finite.push((row, value.unwrap_or(f64::NAN)));
+            }
+        }
+    }
+    broken.mark(table.key(QUATERNION[0]), &zero, true, notes);
+    broken.mark(table.key(QUATERNION[0]), &not_finite, false, notes);
+    Ok(without)
 }
 
 /// `recenter`: 0 leaves the morphology where its file has it.

@@ -369,3 +369,54 @@ fn ids_of_several_populations_are_told_apart() {
         2
     );
 }
+
+/// Groups as bmtk's builder writes them: some nodes have quaternions, others angles.
+#[neurotess_testing::test]
+fn each_group_turns_by_its_own_columns() {
+    use std::f64::consts::FRAC_PI_2;
+    let quaternions: Group = |group| {
+        let half = 0.5_f64.sqrt();
+        for (name, value) in [("w", half), ("x", 0.0), ("y", 0.0), ("z", half)] {
+            let name = format!("orientation_{name}");
+            group.create_dataset(&name).with_f64_data(&[value; 2]);
+        }
+    };
+    let angles: Group = |group| {
+        let angles = [FRAC_PI_2; 2];
+        group
+            .create_dataset("rotation_angle_yaxis")
+            .with_f64_data(&angles);
+    };
+    let both: Group = |group| {
+        for (name, value) in [("w", 1.0), ("x", 0.0), ("y", 0.0), ("z", 0.0)] {
+            let name = format!("orientation_{name}");
+            group.create_dataset(&name).with_f64_data(&[value; 2]);
+        }
+        group
+            .create_dataset("rotation_angle_zaxis")
+            .with_f64_data(&[1.0; 2]);
+    };
+    for order in [[quaternions, angles, both], [angles, both, quaternions]] {
+        let folder = folder(SWC, TYPES, &[100; 6], &order);
+        let circuit = open(&folder);
+        let turned: Vec<DVec3> = circuit.populations[0]
+            .rotations
+            .iter()
+            .map(|rotation| *rotation * DVec3::new(1.0, 0.0, 0.0))
+            .collect();
+        let expected = |group: Group| {
+            if std::ptr::fn_addr_eq(group, quaternions) {
+                DVec3::Y
+            } else if std::ptr::fn_addr_eq(group, angles) {
+                DVec3::NEG_Z
+            } else {
+                DVec3::X
+            }
+        };
+        for (pair, group) in turned.chunks(2).zip(order) {
+            for place in pair {
+                assert!(place.distance(expected(group)) < 1e-12, "{place}");
+            }
+        }
+    }
+}

@@ -35,6 +35,11 @@ impl<'a> Lexer<'a> {
         self.line
     }
 
+    /// What is not read yet.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+
     /// The next token, read.
     pub(super) fn next(&mut self) -> Token<'a> {
         self.skip_blanks();

@@ -62,6 +62,7 @@ pub(super) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Located<Tracing> {
     let mut parser = Parser {
         lexer: Lexer::new(bytes),
         tracing: Tracing::default(),
+        has_commas: memchr::memchr(b',', bytes).is_some(),
         warnings,
     };
     loop {
@@ -104,6 +105,8 @@ struct Fork {
 struct Parser<'a, 'w> {
     lexer: Lexer<'a>,
     tracing: Tracing,
+    /// Whether there is any comma in the file.
+    has_commas: bool,
     warnings: &'w mut Warnings,
 }
 
@@ -116,11 +119,12 @@ impl<'a> Parser<'a, '_> {
             match self.lexer.peek() {
                 Token::Text(name) => {
                     self.lexer.next();
-                    says = if is_cell_body(name) {
-                        Says::Soma
-                    } else {
-                        Says::Name
-                    };
+                    // A name says least: what the block is by its properties stays, before and after.
+                    if is_cell_body(name) {
+                        says = Says::Soma;
+                    } else if says == Says::Nothing {
+                        says = Says::Name;
+                    }
                 }
                 Token::Open => {
                     let mut ahead = self.lexer;
@@ -133,7 +137,7 @@ impl<'a> Parser<'a, '_> {
                         _ => break,
                     }
                 }
-                Token::Word(word) if says == Says::Nothing => {
+                Token::Word(word) if matches!(says, Says::Nothing) => {
                     return self.expression(word, line);
                 }
                 Token::Close => {
@@ -196,7 +200,7 @@ impl<'a> Parser<'a, '_> {
                 return self.expression(word, line);
             }
         };
-        if *says == Says::Nothing {
+        if matches!(says, Says::Nothing | Says::Name) {
             *says = Says::Neurite(kind);
         }
         self.skip(line).map(drop)
@@ -384,6 +388,9 @@ impl<'a> Parser<'a, '_> {
     /// NaN if there must be four.
     fn point(&mut self, diameter: f64) -> Located<Sample> {
         let line = self.lexer.line();
+        if self.has_commas {
+            self.check_commas(line)?;
+        }
         let mut numbers = [0.0, 0.0, 0.0, diameter];
         let mut found = 0;
         while let Token::Number(number) = self.lexer.peek() {
@@ -402,6 +409,35 @@ impl<'a> Parser<'a, '_> {
             radius: numbers[3] / 2.0,
             line,
         })
+    }
+
+    /// Commas may stand between a point's numbers, but not be their decimal marks: as in a row of SWC, some but not all
+    /// numbers are parted by a comma alone, or there are more numbers than a point has.
+    fn check_commas(&mut self, line: u64) -> Located<()> {
+        let text = self.lexer.rest();
+        let end = text.iter().position(|b| b"();|\"".contains(b));
+        let text = &text[..end.unwrap_or(text.len())];
+        if !text.contains(&b',') {
+            return Ok(());
+        }
+        let parts = text.split(|b| b.is_ascii_whitespace());
+        let words = parts.filter(|part| part.iter().any(|b| *b != b','));
+        let (mut count, mut by_comma, mut by_blank) = (0, false, false);
+        for word in words {
+            let numbers = word
+                .split(|&b| b == b',')
+                .filter(|part| !part.is_empty())
+                .count();
+            by_comma |= numbers > 1;
+            by_blank |= count > 0;
+            count += numbers;
+        }
+        if count > 4 || (by_comma && by_blank) {
+            return Err((line, Fault::DecimalComma));
+        }
+        self.warnings
+            .add(line, "separators", "commas between the numbers of a point");
+        Ok(())
     }
 
     fn unexpected(&self, found: &str, expected: &'static str) -> (u64, Fault) {

@@ -50,6 +50,7 @@ pub fn read_bytes(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Rea
         extended,
         zero_for_bad_radii: options.zero_for_bad_radii,
         for_neuron: options.for_neuron,
+        unit_given: options.unit_given,
     };
     read_text(Format::Swc, name, options, |name, warnings| {
         interpret(bytes, name, reading, warnings)
@@ -76,7 +77,7 @@ fn interpret(
     if reading.for_neuron {
         neuron::misreadings(&records, warnings);
     }
-    units::apply(&mut records, warnings);
+    units::apply(&mut records, reading.unit_given, warnings);
     conventions::fork_and_end_types(&mut records, warnings);
     let Records {
         nodes,

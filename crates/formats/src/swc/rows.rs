@@ -30,6 +30,8 @@ pub(super) struct Reading {
     pub(super) zero_for_bad_radii: bool,
     /// What NEURON makes of the file is told.
     pub(super) for_neuron: bool,
+    /// The caller knows the unit.
+    pub(super) unit_given: bool,
 }
 
 /// One row.

@@ -1,4 +1,5 @@
-//! The unit that a header names: navis writes `# Meta: {…, "units": "8 nanometer", …}`, for cells in voxels, too.
+//! What a header says of the unit and the origin: navis writes `# Meta: {…, "units": "8 nanometer", …}`, for cells in
+//! voxels, too; SNT that positions are in pixels, with the voxel's sides; MouseLight an offset.
 
 use super::rows::Records;
 use crate::unit::micrometers;
@@ -8,8 +9,10 @@ use crate::warning::Warnings;
 const READ: &str = "units_in_header";
 
 /// Takes positions and radii to micrometers if the header's metadata names another unit. What is kept of the header then
-/// names the micrometer, so that a copy is not taken for the other unit again. A unit that is named elsewhere is told.
-pub(super) fn apply(records: &mut Records, warnings: &mut Warnings) {
+/// names the micrometer, so that a copy is not taken for the other unit again. A unit that is named elsewhere is told, and so
+/// is an offset. `given`: the caller knows the unit, and takes the lengths to micrometers; that of the header is told.
+pub(super) fn apply(records: &mut Records, given: bool, warnings: &mut Warnings) {
+    tell_offset(&records.header, warnings);
     let said = records
         .header
         .iter()
@@ -29,6 +32,12 @@ pub(super) fn apply(records: &mut Records, warnings: &mut Warnings) {
             &line[metadata.value.end..]
         );
         records.header[place] = after;
+        if given {
+            let message =
+                "the header names another unit than the one that is given: the given one is taken";
+            warnings.add(1, "unit_not_applied", message);
+            return;
+        }
         for node in &mut records.nodes {
             node.position *= factor;
             node.radius *= factor;
@@ -37,12 +46,53 @@ pub(super) fn apply(records: &mut Records, warnings: &mut Warnings) {
         return;
     }
     let spoken = records.header.iter().find_map(|line| spoken(line));
-    if let Some(unit) = spoken {
+    if let Some(unit) = spoken.filter(|_| !given) {
+        let voxel = records.header.iter().find_map(|line| voxel(line));
+        let remedy = match voxel {
+            Some([x, y, z]) => format!("--units voxel={x},{y},{z} changes that"),
+            None => "--units changes that".into(),
+        };
         let message = format!(
-            "the header speaks of {unit}, and the numbers are taken as micrometers: --units changes that"
+            "the header speaks of {unit}, and the numbers are taken as micrometers: {remedy}"
         );
         warnings.add(1, "unit_not_applied", &message);
     }
+}
+
+/// Tells of an offset, as `OFFSET x y z` of MouseLight: positions stay as the rows have them.
+fn tell_offset(header: &[String], warnings: &mut Warnings) {
+    let offset = header.iter().find_map(|line| {
+        let rest = line.trim_start().strip_prefix("OFFSET")?;
+        numbers(rest).filter(|offset| *offset != [0.0; 3])
+    });
+    if let Some([x, y, z]) = offset {
+        let message = format!(
+            "the header gives an offset of {x}, {y}, {z}, which other readers do not add either: positions are those of the \
+             rows; --matrix 1,0,0,{x},0,1,0,{y},0,0,1,{z} adds it"
+        );
+        warnings.add(1, "offset_not_added", &message);
+    }
+}
+
+/// The sides of a voxel, as in `Voxel separation (x,y,z): 0.3, 0.3, 1.0`.
+fn voxel(line: &str) -> Option<[f64; 3]> {
+    let lower = line.to_ascii_lowercase();
+    let speaks = ["voxel separation", "voxel size", "voxel spacing"];
+    let at = speaks.iter().find_map(|words| lower.find(words))?;
+    let (_, rest) = line[at..].split_once([':', '='])?;
+    numbers(rest).filter(|sides| sides.iter().all(|side| *side > 0.0))
+}
+
+/// Three finite numbers, parted by blanks or commas.
+fn numbers(text: &str) -> Option<[f64; 3]> {
+    let mut words = text
+        .split(|c: char| c.is_whitespace() || c == ',')
+        .filter(|w| !w.is_empty());
+    let mut next = || {
+        let number: f64 = words.next()?.parse().ok()?;
+        number.is_finite().then_some(number)
+    };
+    Some([next()?, next()?, next()?])
 }
 
 /// Where a line of metadata names its unit.
@@ -79,10 +129,12 @@ fn factor(unit: &str) -> Option<f64> {
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
-/// A unit other than the micrometer in a comment like `units: nm` or `unit = pixels`.
+/// A unit other than the micrometer in a comment like `units: nm`, `unit = pixels` or `positions in pixels`.
 fn spoken(line: &str) -> Option<&str> {
     let lower = line.to_ascii_lowercase();
-    let at = lower.find("unit")?;
+    let Some(at) = lower.find("unit") else {
+        return in_unit(line);
+    };
     if line[..at].ends_with(char::is_alphabetic) {
         return None;
     }
@@ -95,6 +147,31 @@ fn spoken(line: &str) -> Option<&str> {
         ["pixel", "pixels", "voxel", "voxels", "px"].contains(&word.to_ascii_lowercase().as_str());
     let is_other = micrometers(word).is_some_and(|factor| factor != 1.0);
     (is_other || is_unknown_length).then_some(word)
+}
+
+/// A unit other than the micrometer in a comment of what lengths are in.
+fn in_unit(line: &str) -> Option<&str> {
+    let lower = line.to_ascii_lowercase();
+    let of_lengths = [
+        "position",
+        "coordinate",
+        "radi",
+        "length",
+        "diameter",
+        "distance",
+    ];
+    if !of_lengths.iter().any(|what| lower.contains(what)) {
+        return None;
+    }
+    let mut words =
+        line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '(' | ')' | '.'));
+    words.find(|word| word.eq_ignore_ascii_case("in"))?;
+    let word = words.find(|word| !word.is_empty())?;
+    let lower = word.to_ascii_lowercase();
+    let is_picture = ["pixel", "pixels", "voxel", "voxels"].contains(&lower.as_str());
+    // Abbreviations are words of other languages, too.
+    let is_other = lower.len() > 3 && micrometers(word).is_some_and(|factor| factor != 1.0);
+    (is_picture || is_other).then_some(word)
 }
 
 #[cfg(test)]
@@ -131,11 +208,19 @@ mod tests {
     fn comments_that_speak_of_another_unit_are_found() {
         assert_eq!(spoken("Units: nm"), Some("nm"));
         assert_eq!(spoken("unit = pixels, isotropic"), Some("pixels"));
+        let snt = "All positions and radii in pixels";
+        assert_eq!(spoken(snt), Some("pixels"));
+        assert_eq!(spoken("Coordinates are in nanometers."), Some("nanometers"));
+        let separation = voxel("Voxel separation (x,y,z): 0.3, 0.3, 1.0");
+        assert_eq!(separation, Some([0.3, 0.3, 1.0]));
+        assert_eq!(voxel("Voxel separation (x,y,z): 0, 0.3, 1.0"), None);
         for none in [
             "units: um",
             "unit",
             "community: nm",
             "scale 1 1 1",
+            "positions in micrometers",
+            "traced in Meters Lab",
             "units:",
         ] {
             assert_eq!(spoken(none), None, "{none}");

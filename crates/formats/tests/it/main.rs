@@ -10,6 +10,8 @@ mod fuzz_swc;
 mod growth;
 #[cfg(feature = "h5")]
 mod h5_files;
+#[cfg(feature = "asc")]
+mod headers;
 #[cfg(feature = "json")]
 mod json;
 #[cfg(feature = "xml")]

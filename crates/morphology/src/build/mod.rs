@@ -30,6 +30,7 @@ use crate::{
 };
 use notes::Notes;
 use origin::Frame;
+use size::Size;
 use somata::Somata;
 use tree::{Links, NONE};
 
@@ -204,8 +205,10 @@ fn build(
     morphology.file_sections = collector.finish(&morphology.sections);
     let is_of_soma = |i: u32| is_soma(&nodes[i as usize]) && somata.of(i) != NONE;
     notes.radii(nodes, is_of_soma);
-    if size::too_large(nodes, is_of_soma) {
-        notes.add(Oddity::TooLarge, 0);
+    match size::size(nodes, is_of_soma) {
+        Size::Plausible => {}
+        Size::TooLarge => notes.add(Oddity::TooLarge, 0),
+        Size::TooSmall => notes.add(Oddity::TooSmall, 0),
     }
     Ok(Built {
         morphology,

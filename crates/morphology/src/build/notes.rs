@@ -37,6 +37,8 @@ pub enum Oddity {
     NegativeRadius,
     /// The cell is far larger than neurons are, as if its unit were not the micrometer.
     TooLarge,
+    /// The cell is so small that its unit is likely the millimeter or the meter.
+    TooSmall,
 }
 
 impl Oddity {
@@ -57,6 +59,7 @@ impl Oddity {
             Self::ZeroRadius => "zero_radius",
             Self::NegativeRadius => "negative_radius",
             Self::TooLarge => "too_large",
+            Self::TooSmall => "too_small",
         }
     }
 }
@@ -78,6 +81,7 @@ impl fmt::Display for Oddity {
             Self::ZeroRadius => "points with radius zero",
             Self::NegativeRadius => "negative radius: kept, measured as zero",
             Self::TooLarge => "the cell is far larger than neurons are: its unit may be the nanometer or the voxel",
+            Self::TooSmall => "the cell is far smaller than neurons are: its unit may be the millimeter or the meter",
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Whether a cell is too large for a neuron, as files in nanometers or voxels are.
+//! Whether a cell is too large for a neuron, as files in nanometers or voxels are, or too small, as those in millimeters.
 
 use glam::DVec3;
 
@@ -13,25 +13,66 @@ const POSSIBLE_IF_THICK: f64 = 5_000.0;
 /// micrometers only giant axons, which are shorter.
 const THICK: f64 = 5.0;
 
+/// The median distance (µm) of samples that is possible in a cell of more than [`POSSIBLE_IF_THICK`]: tracings through whole
+/// brains have one every 5 to 50 µm.
+const SPARSE: f64 = 200.0;
+/// A side (µm) that is too small for a tracing of a neurite: in millimeters, it is a cell of 1 mm.
+const SMALL: f64 = 1.0;
+/// The radius (µm) of a soma that is too small, and the side of the cell below which that says something: in millimeters, a
+/// soma of 5 µm has 0.005, and an axon through a whole brain 20.
+const SMALL_SOMA: (f64, f64) = (0.1, 20.0);
+
+/// What the size of a cell says of its unit.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Size {
+    Plausible,
+    TooLarge,
+    TooSmall,
+}
+
 /// Whether the unit is likely not the micrometer. The limits are chosen by eye, between cells as they are and the
-/// same a thousand times larger; skeletons in voxels of 8 nm are found too.
-pub(super) fn too_large(nodes: &[Node], is_of_soma: impl Fn(u32) -> bool) -> bool {
+/// same a thousand times larger or smaller; skeletons in voxels of 8 nm are found too.
+pub(super) fn size(nodes: &[Node], is_of_soma: impl Fn(u32) -> bool) -> Size {
     let first = nodes.first().map_or(DVec3::ZERO, |node| node.position);
     let (min, max) = nodes.iter().fold((first, first), |(min, max), node| {
         (min.min(node.position), max.max(node.position))
     });
     let side = (max - min).max_element();
     if side <= POSSIBLE_IF_THICK {
-        return false;
+        let of_soma = (0_u32..).zip(nodes).filter(|&(i, _)| is_of_soma(i));
+        let soma = of_soma.map(|(_, node)| node.radius).fold(0.0, f64::max);
+        let has_neurite = nodes.len() > 2 && side > 0.0;
+        let (radius, largest) = SMALL_SOMA;
+        let small_soma = soma > 0.0 && soma < radius && side < largest;
+        return match has_neurite && (side < SMALL || small_soma) {
+            true => Size::TooSmall,
+            false => Size::Plausible,
+        };
     }
     if side > POSSIBLE {
-        return true;
+        return Size::TooLarge;
     }
     let of_neurites = (0_u32..).zip(nodes).filter(|&(i, _)| !is_of_soma(i));
-    let mut radii: Vec<f64> = of_neurites.map(|(_, node)| node.radius).collect();
+    let mut radii: Vec<f64> = of_neurites.clone().map(|(_, node)| node.radius).collect();
     radii.retain(|&radius| radius > 0.0);
-    let middle = radii.len() / 2;
-    middle < radii.len() && *radii.select_nth_unstable_by(middle, f64::total_cmp).1 > THICK
+    if median(&mut radii).is_some_and(|radius| radius > THICK) {
+        return Size::TooLarge;
+    }
+    let link = |(_, node): (u32, &Node)| {
+        let parent = nodes.get(node.parent? as usize)?;
+        Some(parent.position.distance(node.position))
+    };
+    let mut links: Vec<f64> = of_neurites.filter_map(link).collect();
+    // Two points may be far apart; a tree of them is not.
+    match links.len() > 2 && median(&mut links).is_some_and(|link| link > SPARSE) {
+        true => Size::TooLarge,
+        false => Size::Plausible,
+    }
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

@@ -4,7 +4,13 @@ use neurotess_mesh::SurfaceMesh;
 use neurotess_recipe::{MESHES, MeshOptions, mesh, read};
 
 /// Vertices and volume (µm³) of two samples, as the meshes of this number have them.
-const KNOWN: (u32, [(&str, usize, f64); 2]) = (2, [("granule.swc", 59_098, 251.71), ("star.swc", 112_850, 1682.25)]);
+const KNOWN: (u32, [(&str, usize, f64); 2]) = (
+    2,
+    [
+        ("granule.swc", 59_098, 251.71),
+        ("star.swc", 112_850, 1682.25),
+    ],
+);
 
 /// Where this fails because meshes have become others on purpose: raise [`MESHES`], and write down what they are now.
 /// Otherwise `mesh --resume` would mix them with those of earlier builds.

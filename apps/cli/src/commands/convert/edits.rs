@@ -151,6 +151,11 @@ impl EditArgs {
         self.mend_radii.is_some()
     }
 
+    /// Whether the file's unit is told.
+    pub(super) fn gives_unit(&self) -> bool {
+        self.units.is_some()
+    }
+
     /// Whether the unit of the file is dealt with.
     pub(super) fn changes_units(&self) -> bool {
         self.units.is_some() || self.scale.is_some()

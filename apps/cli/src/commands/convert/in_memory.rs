@@ -60,7 +60,7 @@ impl EditRecipe {
 
     /// Whether a reader's warning of this code has no meaning any more, since the edits deal with what it is of.
     pub fn settles(&self, code: &str) -> bool {
-        self.edits.changes_units() && code == OF_UNIT
+        self.edits.changes_units() && OF_UNIT.contains(&code)
     }
 
     /// The edited tracing, and what each edit changed.

@@ -192,6 +192,7 @@ fn read(path: &Path, args: &ConvertArgs) -> Result<formats::Read, Failure> {
     let options = ReadOptions {
         strict: args.strict,
         zero_for_bad_radii: args.edits.mends_radii(),
+        unit_given: args.edits.gives_unit(),
         ..ReadOptions::default()
     };
     read_morphology(path, None, &options)
