@@ -9,7 +9,7 @@ use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOption
 
 use neurotess_formats::capacity::{self, Excess};
 use neurotess_formats::indices::{self, IndexError};
-use neurotess_formats::regular;
+use neurotess_formats::{layout_5, regular};
 
 use crate::{CircuitError, Fault};
 
@@ -38,7 +38,7 @@ const MAX_ROWS: u64 = u32::MAX as u64;
 impl Store {
     /// Opens a file that is read in parts, where they lie.
     pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
-        Self::open_by(path, File::open_streaming)
+        Self::open_by(path, layout_5::open_streaming)
     }
 
     /// Opens a file that is read nearly whole. Up to a gigabyte is read at once: strings lie one by
@@ -46,7 +46,7 @@ impl Store {
     pub(crate) fn open_whole(path: &Path) -> Result<Self, CircuitError> {
         let size = std::fs::metadata(path).map_or(0, |data| data.len());
         if size <= 1 << 30 {
-            Self::open_by(path, File::open)
+            Self::open_by(path, layout_5::open)
         } else {
             Self::open(path)
         }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::indices::{self, IndexError};
-use crate::{Fault, capacity};
+use crate::{Fault, capacity, layout_5};
 
 /// A file, open for reading.
 pub(crate) struct Store {
@@ -34,7 +34,7 @@ impl Store {
     /// [`Fault::Hdf5`] if the bytes are no HDF5 file.
     pub(crate) fn from_bytes(bytes: Vec<u8>) -> Result<Self, Fault> {
         let size = bytes.len() as u64;
-        let file = hdf5_pure::File::from_bytes(bytes).map_err(|e| hdf5("the file", &e))?;
+        let file = layout_5::from_bytes(bytes).map_err(|e| hdf5("the file", &e))?;
         Ok(Self {
             file,
             size,
@@ -44,7 +44,7 @@ impl Store {
 
     /// Opens a file that is read where its parts lie.
     pub(crate) fn open(path: &Path) -> Result<Self, Fault> {
-        let file = hdf5_pure::File::open_streaming(path).map_err(|e| hdf5("the file", &e))?;
+        let file = layout_5::open_streaming(path).map_err(|e| hdf5("the file", &e))?;
         let size = file.file_size();
         Ok(Self {
             file,

@@ -43,6 +43,8 @@ pub mod indices;
 pub mod json;
 #[cfg(feature = "xml")]
 pub mod knossos;
+#[cfg(feature = "h5")]
+pub mod layout_5;
 mod losses;
 #[cfg(any(feature = "neuroml", feature = "xml"))]
 mod named;

@@ -104,6 +104,17 @@ impl Losses {
             // The points are told.
             return;
         }
+        // After an edit that took sections away, other numbers are what was asked for.
+        let known = before.known_file_sections();
+        let mut there = vec![false; known.sections.len()];
+        known
+            .of_points
+            .iter()
+            .for_each(|&of| there[of as usize] = true);
+        let mut all = known.sections.iter().zip(there);
+        if all.any(|(section, there)| !there && !section.empty) {
+            return;
+        }
         let numbers = |of: &Morphology| SectionNumbers::of(of, Program::Neuron).of_points(of);
         let (before, after) = (numbers(before), numbers(after));
         let mut pairs: Vec<(u64, u64)> = before.into_iter().zip(after).collect();

@@ -77,6 +77,13 @@ pub(crate) struct EdgeSource {
     pub(crate) populations: Option<Vec<String>>,
 }
 
+/// The circuit that a simulation's `network` is, instead of a path: with nodes, or with `networks` that have them.
+fn within<'a>(root: &Json<'a>) -> Option<Json<'a>> {
+    let network = root.get("network")?;
+    let is_circuit = network.get("nodes").is_some() || network.get("networks").is_some();
+    is_circuit.then_some(network)
+}
+
 impl Config {
     /// Reads the configuration of a circuit or a simulation.
     pub(crate) fn open(path: &Path) -> Result<Self, CircuitError> {
@@ -84,8 +91,14 @@ impl Config {
         let root = document.root();
         let manifest = Manifest::read(&root, folder_of(path))?;
         if root.get("networks").is_some() {
-            let mut config = Self::circuit(path, &root, &manifest)?;
+            let mut config = Self::circuit(path, &root, &root, &manifest)?;
             config.simulations_beside(path);
+            return Ok(config);
+        }
+        // arbor's SONATA has the circuit within the simulation.
+        if let Some(network) = within(&root) {
+            let mut config = Self::circuit(path, &network, &root, &manifest)?;
+            config.simulation(&root, &manifest)?;
             return Ok(config);
         }
         // bmtk's config.json, which names both, and simulations.
@@ -100,7 +113,7 @@ impl Config {
             return Err(CircuitError::of_file(&name(&network), Fault::NotACircuit));
         }
         let inner_manifest = Manifest::read(&inner_root, folder_of(&network))?;
-        let mut config = Self::circuit(&network, &inner_root, &inner_manifest)?;
+        let mut config = Self::circuit(&network, &inner_root, &inner_root, &inner_manifest)?;
         match root.get("simulation") {
             Some(simulation) => {
                 let simulation = manifest.path(&simulation)?;
@@ -111,16 +124,25 @@ impl Config {
         Ok(config)
     }
 
-    fn circuit(path: &Path, root: &Json, manifest: &Manifest) -> Result<Self, CircuitError> {
+    /// `root`: what has `networks`, or is that itself; `outer`: where components are otherwise.
+    fn circuit(
+        path: &Path,
+        root: &Json,
+        outer: &Json,
+        manifest: &Manifest,
+    ) -> Result<Self, CircuitError> {
         let mut config = Self {
             file: name(path),
             ..Self::default()
         };
-        let components = match root.get("components") {
+        let components = match root.get("components").or_else(|| outer.get("components")) {
             Some(components) => MorphologyFolders::read(&components, manifest)?,
             None => MorphologyFolders::default(),
         };
-        let networks = root.need("networks")?;
+        let networks = match root.get("nodes") {
+            Some(_) => root.clone(),
+            None => root.need("networks")?,
+        };
         for source in networks.need("nodes")?.items()? {
             let file = source.need("nodes_file")?;
             let types = source.get("node_types_file");
@@ -349,6 +371,9 @@ fn names(path: &Path) -> Named {
         .get("networks")
         .is_some_and(|n| n.get("nodes").is_some())
     {
+        return Named::Circuit;
+    }
+    if within(&root).is_some() {
         return Named::Circuit;
     }
     match root.get("network").filter(|n| n.value.is_string()) {

@@ -82,6 +82,8 @@ impl<'a> Lexer<'a> {
                     continue;
                 }
                 b',' => {}
+                // No-break spaces: alone in Latin-1, in UTF-8 after a lead byte that no number or word begins with.
+                0xa0 | 0xc2 => {}
                 _ if byte.is_ascii_whitespace() || byte == 0x0b => {}
                 _ => return,
             }
@@ -99,7 +101,7 @@ impl<'a> Lexer<'a> {
     }
 
     fn word(&mut self) -> Token<'a> {
-        let ends = |b: &u8| b.is_ascii_whitespace() || b"()|<>\";,\x0b\x1a".contains(b);
+        let ends = |b: &u8| b.is_ascii_whitespace() || b"()|<>\";,\x0b\x1a\xa0\xc2".contains(b);
         let end = self.rest.iter().position(ends).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;

@@ -19,6 +19,9 @@ const CLASSES: [Class; 256] = {
     classes[b'\t' as usize] = Class::Blank;
     classes[0x0b] = Class::Blank;
     classes[0x0c] = Class::Blank;
+    // A no-break space, alone in Latin-1, in UTF-8 after its lead byte, which numbers never have.
+    classes[0xa0] = Class::Blank;
+    classes[0xc2] = Class::Blank;
     classes[b',' as usize] = Class::Comma;
     classes[b';' as usize] = Class::Semicolon;
     classes[b'#' as usize] = Class::Hash;

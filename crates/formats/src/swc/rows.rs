@@ -154,7 +154,7 @@ fn warn(oddities: Oddities, line: u64, extended: bool, warnings: &mut Warnings) 
         warnings.add(
             line,
             "radius_not_finite",
-            "a radius is no finite number: taken as 0",
+            "a radius is no finite number, or none at all: taken as 0",
         );
     }
 }
@@ -209,6 +209,9 @@ fn row(text: &[u8], reading: Reading) -> Result<Row, Fault> {
     })
 }
 
+/// What tables have where there is no number.
+const NO_NUMBER: [&[u8]; 6] = [b"na", b"n/a", b"none", b"null", b"nil", b"<na>"];
+
 /// Takes a row apart.
 struct Fields<'a> {
     rest: &'a [u8],
@@ -240,7 +243,11 @@ impl Fields<'_> {
     /// A number, or 0 where it is not finite or out of range.
     fn float_or_zero(&mut self, column: &'static str, limit: f64) -> Result<f64, Fault> {
         self.next_field(column)?;
-        let (value, length) = number::any_float(self.rest, column)?;
+        let none = number::token(self.rest);
+        let (value, length) = match NO_NUMBER.iter().any(|no| none.eq_ignore_ascii_case(no)) {
+            true => (f64::NAN, none.len()),
+            false => number::any_float(self.rest, column)?,
+        };
         self.rest = &self.rest[length..];
         let good = value.abs() <= limit;
         self.row.bad_radius |= !good;

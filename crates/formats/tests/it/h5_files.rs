@@ -141,3 +141,27 @@ fn reports_and_nodes_are_told_from_morphologies() {
     std::fs::write(&path, "no HDF5").expect("written");
     assert!(!h5::is_other(&path));
 }
+
+/// Files of HDF5 2.0.0 (by h5py 3.16.0, `libver="latest"`, gzip), whose chunks are found by an array of fixed size, one
+/// that grows, or nothing, since there is a single chunk: a dendrite of 20 points along x that forks.
+#[neurotess_testing::test]
+fn filtered_chunks_of_hdf5_2_are_read() {
+    for index in ["fixed", "single", "extensible"] {
+        let file = format!(
+            "{}/tests/fixtures/layout_5_{index}.h5",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let in_memory = std::fs::read(&file).expect("there");
+        let options = ReadOptions::default();
+        let read = h5::read_bytes(in_memory.clone(), "cell.h5", &options);
+        let cell = read.expect(index).morphology;
+        assert_eq!((cell.points.len(), cell.sections.len()), (22, 3), "{index}");
+        assert_eq!(cell.points[20].position.to_array(), [30.0, 10.0, 0.0]);
+        // Broken anywhere, it is an error or another cell, and never worse.
+        for at in (0..in_memory.len()).step_by(neurotess_testing::cases(7, 1)) {
+            let mut broken = in_memory.clone();
+            broken[at] ^= 0x5a;
+            let _ = h5::read_bytes(broken, "cell.h5", &options);
+        }
+    }
+}

@@ -101,7 +101,7 @@ fn pieces_are_joined_and_rerooted() {
         format!("{SMALL}10 2 0 -50 2 0.5 -1\n11 2 0 -32 2 0.5 10\n20 3 900 0 0 1 -1\n21 3 910 0 0 1 20\n"),
     );
     let json = work
-        .run("convert pieces.swc -o out.swc --join 5 --json")
+        .run("convert pieces.swc -o out.swc --join 5 --keep-ids --json")
         .exits(0)
         .json();
     let join = &json[0]["edits"][0];
@@ -121,7 +121,7 @@ fn pieces_are_joined_and_rerooted() {
         "{told}"
     );
 
-    work.run("convert pieces.swc -o rooted.swc --reroot 21")
+    work.run("convert pieces.swc -o rooted.swc --reroot 21 --keep-ids")
         .exits(0);
     assert_eq!(row(&work.text("rooted.swc"), 20)[6], 21.0);
     work.run("convert pieces.swc -o part.swc --subtree 5")
