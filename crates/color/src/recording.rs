@@ -69,6 +69,8 @@ pub struct Recording {
     pub title: String,
     /// Unit of the values; empty if unknown.
     pub unit: String,
+    /// What is odd in the file, though it can be read.
+    pub warnings: Vec<String>,
     /// Times (ms) of its frames, or of steps through spikes.
     pub time: TimeAxis,
     color_keys: Vec<Vec<u32>>,
@@ -102,10 +104,13 @@ impl Recording {
         instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, RecordingError> {
         let path = &circuit.report_of_sections(path)?;
-        let mut recording = match RecordingFile::open(path)? {
+        let opened = RecordingFile::open(path)?;
+        let warnings = opened.warnings().iter().map(ToString::to_string).collect();
+        let mut recording = match opened {
             RecordingFile::Report(report) => Self::of_report(report, circuit, cells, instances)?,
             RecordingFile::Spikes(spikes) => Self::of_spikes(spikes, circuit, cells, instances)?,
         };
+        recording.warnings = warnings;
         let title = path.file_stem().unwrap_or_default().to_string_lossy();
         recording.file = path.display().to_string();
         recording.title = title.replace('_', " ");
@@ -154,6 +159,7 @@ impl Recording {
         Ok(Self {
             file: String::new(),
             title: String::new(),
+            warnings: Vec::new(),
             unit,
             time: together(&report.populations),
             color_keys,
@@ -195,6 +201,7 @@ impl Recording {
         Ok(Self {
             file: String::new(),
             title: String::new(),
+            warnings: Vec::new(),
             unit: String::new(),
             time: steps_through(&spikes),
             color_keys: first_values(cells),
@@ -217,6 +224,7 @@ impl Recording {
                 false => title.clone(),
             },
             title,
+            warnings: Vec::new(),
             unit,
             time,
             color_keys,

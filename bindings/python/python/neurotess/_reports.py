@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 from . import _neurotess
+from ._errors import ReadWarning
 from ._packages import needed
 
 TYPE_CHECKING = False
@@ -50,6 +52,8 @@ class Report:
         """The file."""
         return self._path
 
+        for message in self._report.warnings:
+            warnings.warn(ReadWarning(message), stacklevel=2)
     @property
     def populations(self) -> list[str]:
         """Names of the populations in the file."""

@@ -37,6 +37,13 @@ impl Report {
         matches!(*self.file, RecordingFile::Spikes(_))
     }
 
+    /// What is odd in it.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        let warnings = self.file.warnings().iter();
+        warnings.map(ToString::to_string).collect()
+    }
+
     /// Names of the populations.
     #[getter]
     fn populations(&self) -> Vec<String> {

@@ -100,6 +100,10 @@ impl Table {
         let datatype = datatype.map_err(|e| store.fault(path, hdf5(&e)))?;
         let number = number(&datatype);
         let access = match number {
+        if let (Datatype::FloatingPoint { size, .. }, None) = (&datatype, number) {
+            let reason = format!("its floating-point numbers of {size} bytes are none of IEEE 754");
+            return Err(store.fault(path, Fault::Hdf5 { reason }));
+        }
             Some(number) => access(&dataset, number).map_err(|e| store.fault(path, hdf5(&e)))?,
             None => Access::Rows,
         };
@@ -150,8 +154,19 @@ impl Table {
     }
 
     fn whole_row(&self, row: u64, columns: &[u64]) -> Result<Vec<f32>, CircuitError> {
-        let numbers = self.dataset.read_f64_rows(row, 1);
-        let numbers = numbers.map_err(|e| self.fault(hdf5(&e)))?;
+        let numbers = match self.number {
+            // hdf5-pure knows no such numbers, but where they are.
+            Some(number @ Number { size: 2, .. }) => {
+                let bytes = self.dataset.read_raw_rows(row, 1);
+                let bytes = bytes.map_err(|e| self.fault(hdf5(&e)))?;
+                let values = 0..bytes.len() / number.size;
+                values.map(|i| f64::from(number.read(&bytes, i))).collect()
+            }
+            _ => {
+                let numbers = self.dataset.read_f64_rows(row, 1);
+                numbers.map_err(|e| self.fault(hdf5(&e)))?
+            }
+        };
         let pick = |&column: &u64| numbers.get(column as usize).map(|&n| n as f32);
         let picked: Option<Vec<f32>> = columns.iter().map(pick).collect();
         picked.ok_or_else(|| {
@@ -325,27 +340,46 @@ impl Number {
         }
         match *own {
             [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
+            [a, b] => half(u16::from_le_bytes([a, b])),
             [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
             _ => f32::NAN,
         }
     }
 }
 
-/// How a datatype is written, if it is IEEE 754 of 4 or 8 bytes.
+/// A number of IEEE 754 of 2 bytes: sign, 5 bits of the exponent, 10 of the fraction.
+fn half(bits: u16) -> f32 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff));
+    match exponent {
+        0 => sign * fraction * 2_f32.powi(-24),
+        31 if fraction == 0.0 => sign * f32::INFINITY,
+        31 => f32::NAN,
+        _ => sign * (1024.0 + fraction) * 2_f32.powi(exponent - 25),
+    }
+}
+
+/// How a datatype is written, if it is IEEE 754 of 2, 4 or 8 bytes.
 fn number(datatype: &Datatype) -> Option<Number> {
     let Datatype::FloatingPoint {
-        size, byte_order, ..
+        size,
+        byte_order,
+        layout,
     } = datatype
     else {
         return None;
     };
     let big_endian = match byte_order {
+    // Others of as many bytes, like bfloat16.
+    if *size == 2 && (layout.exponent_size, layout.mantissa_size) != (5, 10) {
+        return None;
+    }
         DatatypeByteOrder::LittleEndian => false,
         DatatypeByteOrder::BigEndian => true,
         _ => return None,
     };
     let size = *size as usize;
-    matches!(size, 4 | 8).then_some(Number { size, big_endian })
+    matches!(size, 2 | 4 | 8).then_some(Number { size, big_endian })
 }
 
 fn access(dataset: &Dataset, number: Number) -> Result<Access, hdf5_pure::Error> {

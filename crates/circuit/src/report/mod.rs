@@ -17,6 +17,7 @@
 
 mod axis;
 mod chunks;
+mod contradictions;
 mod elements;
 mod spikes;
 
@@ -26,11 +27,12 @@ use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
 pub use elements::{DeclaredReport, Elements};
+use contradictions::contradictions;
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;
 use crate::sections::{Compartment, compartments};
-use crate::{Circuit, CircuitError, Fault, NodeRef};
+use crate::{Circuit, CircuitError, Fault, NodeRef, Warning};
 use chunks::Table;
 
 /// A file that a simulation wrote.
@@ -60,6 +62,16 @@ impl RecordingFile {
     }
 }
 
+impl RecordingFile {
+    /// What is odd in it, though it can be read.
+    pub fn warnings(&self) -> &[Warning] {
+        match self {
+            Self::Report(report) => &report.warnings,
+            Self::Spikes(_) => &[],
+        }
+    }
+}
+
 /// Whether an HDF5 file is to be opened as a recording and not, say, as a morphology.
 pub fn is_recording(path: &Path) -> bool {
     Store::open(path).is_ok_and(|store| {
@@ -74,6 +86,8 @@ pub struct Report {
     pub path: PathBuf,
     /// What it has for each population.
     pub populations: Vec<ReportPopulation>,
+    /// What contradicts itself, though it can be read.
+    pub warnings: Vec<Warning>,
 }
 
 /// Whether a report has the whole neurons or their somata.
@@ -99,6 +113,9 @@ pub struct ReportPopulation {
     pointers: Vec<u64>,
     rows: HashMap<u64, u32>,
     mapping: Store,
+    /// Data sets of the times and of the nodes' ids.
+    times: String,
+    ids: String,
     compartments: String,
     positions: Option<String>,
     table: Table,
@@ -139,8 +156,12 @@ impl Report {
         if populations.is_empty() {
             return Err(store.fault("report", Fault::Missing));
         }
-        let path = path.to_path_buf();
-        Ok(Self { path, populations })
+        let warnings = populations.iter().flat_map(contradictions).collect();
+        Ok(Self {
+            path: path.to_path_buf(),
+            populations,
+            warnings,
+        })
     }
 }
 
@@ -175,7 +196,8 @@ impl ReportPopulation {
             // A row of the table has as many numbers.
             store.believe(mapped)?;
         }
-        let time = time_axis(&store, &find(&["time"])?, table.rows)?;
+        let times = find(&["time"])?;
+        let time = time_axis(&store, &times, table.rows)?;
         let rows = nodes.iter().copied().zip(0..).collect();
         Ok(Self {
             name: name.into(),
@@ -184,6 +206,8 @@ impl ReportPopulation {
             nodes,
             pointers,
             rows,
+            times,
+            ids,
             compartments,
             positions,
             table,
@@ -206,7 +230,7 @@ impl ReportPopulation {
         }
     }
 
-    /// Index of a node in [`Self::nodes`].
+    /// Index of a node in [`Self::nodes`]; of one that is there several times the last.
     pub fn index_of(&self, node: u64) -> Option<usize> {
         self.rows.get(&node).map(|&row| row as usize)
     }

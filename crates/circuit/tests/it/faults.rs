@@ -454,6 +454,96 @@ fn reports_are_refused_with_file_and_dataset() {
     assert!(RecordingFile::open(folder.path().join("gone.h5")).is_err());
 }
 
+/// A report of one population in which each node has one compartment; `half`: numbers of 16 bits.
+fn small_report(folder: &Path, nodes: &[u64], time: &[f64], half: bool) -> Report {
+    let mut file = FileBuilder::new();
+    let n = nodes.len() as u64;
+    let mut mapping = file.create_group("mapping");
+    mapping.create_dataset("node_ids").with_u64_data(nodes);
+    let pointers: Vec<u64> = (0..=n).collect();
+    mapping
+        .create_dataset("index_pointers")
+        .with_u64_data(&pointers);
+    mapping
+        .create_dataset("element_ids")
+        .with_u64_data(&vec![0; nodes.len()]);
+    mapping.create_dataset("time").with_f64_data(time);
+    file.add_group(mapping.finish());
+    let data = file.create_dataset("data");
+    if half {
+        let layout = hdf5_pure::FloatingPointLayout {
+            bit_offset: 0,
+            bit_precision: 16,
+            exponent_location: 10,
+            exponent_size: 5,
+            mantissa_location: 0,
+            mantissa_size: 10,
+            exponent_bias: 15,
+        };
+        let datatype = hdf5_pure::Datatype::FloatingPoint {
+            size: 2,
+            byte_order: hdf5_pure::DatatypeByteOrder::LittleEndian,
+            layout,
+        };
+        // -65.5, the least number above 0, infinity and 0.333.
+        let bytes: Vec<u8> = [0xd418_u16, 0x0001, 0x7c00, 0x3554]
+            .iter()
+            .flat_map(|n| n.to_le_bytes())
+            .collect();
+        data.with_raw_data(datatype, bytes, 4);
+        data.with_shape(&[4 / n, n]);
+    } else {
+        data.with_f32_data(&vec![1.0; 2 * nodes.len()])
+            .with_shape(&[2, n]);
+    }
+    let path = folder.join("small.h5");
+    fs::write(&path, file.finish().expect("bytes")).expect("written");
+    Report::open(path).expect("a report")
+}
+
+#[neurotess_testing::test]
+fn reports_that_contradict_themselves_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let told = |nodes: &[u64], time: &[f64]| {
+        let warnings = small_report(folder.path(), nodes, time, false).warnings;
+        warnings
+            .iter()
+            .map(|w| (w.code, w.key.clone(), w.count))
+            .collect::<Vec<_>>()
+    };
+    // The end is that of the last frame, or its time.
+    assert_eq!(told(&[0, 1], &[0.0, 2.0, 1.0]), []);
+    assert_eq!(told(&[0, 1], &[0.0, 1.0, 1.0]), []);
+    let time = "mapping/time".to_owned();
+    assert_eq!(
+        told(&[0, 1], &[0.0, 1000.0, 1.0]),
+        [("frames_missing", time.clone(), 1)]
+    );
+    assert_eq!(
+        told(&[0, 1], &[0.0, 0.0, 1.0]),
+        [("frames_beyond_end", time, 1)]
+    );
+    let ids = "mapping/node_ids".to_owned();
+    assert_eq!(
+        told(&[3, 4, 3, 3], &[0.0, 2.0, 1.0]),
+        [("node_repeated", ids, 2)]
+    );
+}
+
+#[neurotess_testing::test]
+fn numbers_of_16_bits_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = small_report(folder.path(), &[0, 1], &[0.0, 2.0, 1.0], true);
+    let values = |frame| {
+        report.populations[0]
+            .values(frame, &[0, 1])
+            .expect("values")
+    };
+    assert_eq!(values(0), [-65.5, 2_f32.powi(-24)]);
+    assert_eq!(values(1)[0], f32::INFINITY);
+    assert!((values(1)[1] - 0.333).abs() < 1e-4);
+}
+
 /// What is wrong with a column of nodes, stored as it is given.
 fn nodes_refused(set: impl Fn(&mut hdf5_pure::GroupBuilder)) -> String {
     let folder = tempfile::tempdir().expect("a folder");

@@ -27,6 +27,9 @@ pub(super) fn read(
 ) -> anyhow::Result<PageRecording> {
     let nodes: Vec<_> = nodes.iter().copied().map(Some).enumerate().collect();
     let recording = Recording::open(report, circuit, cells, &nodes).map_err(whole)?;
+    for warning in &recording.warnings {
+        reporter.warning(warning);
+    }
     if recording.without() > 0 {
         let (without, all, file) = (recording.without(), recording.places(), &recording.file);
         reporter.warning(&format!(

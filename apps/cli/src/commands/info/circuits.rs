@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use neurotess::circuit::{Circuit, Elements, RecordingFile, ReportKind, TimeAxis};
+use neurotess::circuit::{Circuit, Elements, RecordingFile, ReportKind, TimeAxis, Warning};
 use serde::Serialize;
 
 use crate::io::circuits;
@@ -114,11 +114,23 @@ pub(crate) fn describe_all(
 fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
     let mut errors: Vec<String> = circuit.failures.iter().map(ToString::to_string).collect();
     let mut reports = Vec::new();
+    let warning = |warning: &Warning| CircuitWarning {
+        file: warning.file.clone(),
+        key: warning.key.clone(),
+        code: warning.code,
+        message: warning.message.clone(),
+        count: warning.count,
+    };
+    let mut warnings: Vec<CircuitWarning> = circuit.warnings.iter().map(warning).collect();
     for (name, path) in &circuit.reports {
         match RecordingFile::open(path) {
             Ok(recording) => {
                 let declared = circuit.declared_report(path);
                 let elements = declared.map_or(Elements::Sections, |report| report.elements);
+                warnings.extend(recording.warnings().iter().map(warning));
+                for warning in recording.warnings() {
+                    reporter.warning(&warning.to_string());
+                }
                 reports.extend(report_infos(name, path, elements, &recording));
             }
             Err(e) => {
@@ -140,13 +152,6 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
         target: edges.target.clone(),
         n_edges: edges.count,
     });
-    let warnings = circuit.warnings.iter().map(|warning| CircuitWarning {
-        file: warning.file.clone(),
-        key: warning.key.clone(),
-        code: warning.code,
-        message: warning.message.clone(),
-        count: warning.count,
-    });
     Description {
         file: circuit.file.clone(),
         format: circuit.format,
@@ -161,7 +166,7 @@ fn describe(circuit: &Circuit, reporter: &Reporter) -> Description {
         edges: edges.collect(),
         node_sets: circuit.node_sets.names().map(str::to_owned).collect(),
         reports,
-        warnings: warnings.collect(),
+        warnings,
         errors,
     }
 }

@@ -281,6 +281,9 @@ fn over_time(
         let file = &recording.file;
         anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
     }
+    for warning in &recording.warnings {
+        reporter.warning(warning);
+    }
     let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![recording.time.start]);
     let range = match args.range {
         Some(range) => range,

@@ -78,7 +78,11 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
         .map_err(|Failure(why)| anyhow::anyhow!(why))?;
     let selected: BTreeSet<NodeRef> = selected.into_iter().collect();
     let path = path_of(&circuit, args.report.as_deref())?;
-    let (rows, nodes) = match RecordingFile::open(&path)? {
+    let opened = RecordingFile::open(&path)?;
+    for warning in opened.warnings() {
+        reporter.warning(&warning.to_string());
+    }
+    let (rows, nodes) = match opened {
         RecordingFile::Report(report) => {
             let chosen = chosen(&report, &circuit, &selected)?;
             let nodes = chosen.iter().map(|(_, nodes)| nodes.len()).sum();
