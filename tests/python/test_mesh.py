@@ -124,7 +124,7 @@ def test_no_option_of_the_command_is_missing() -> None:
 
     files = {"out", "force", "format", "unit", "walls", "table", "areas", "materials", "parts"}
     files |= {"shard", "resume", "log", "strict", "help"}
-    common = {"json", "quiet", "verbose", "no_progress", "color"}
+    common = {"json", "quiet", "verbose", "no_progress", "color", "allow_large"}
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
     # In Python a palette may be a dictionary of colors.
     drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color", "saved_view"}

@@ -27,6 +27,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(cli) => cli,
         Err(e) => return report::report_parser_error(&e, &arguments),
     };
+    if cli.common.allow_large {
+        neurotess::formats::budget::allow_large();
+    }
     let reporter = Reporter::new(cli.common);
     let mut code = 1;
     if let Err(e) = run(&cli, &reporter) {

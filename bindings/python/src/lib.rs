@@ -49,5 +49,6 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     #[cfg(feature = "render")]
     page::add_to(module)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
+    module.add_function(wrap_pyfunction!(cell::allow_large, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)
 }

@@ -169,6 +169,19 @@ pub enum Fault {
         /// What the file has room for.
         possible: u64,
     },
+    /// More would be made of the file than is likely.
+    #[error(
+        "would become {made} bytes of a file of {file}, more than the {most} that are allowed: if the file is right, use \
+         --allow-large (in Python allow_large=True)"
+    )]
+    Large {
+        /// Bytes that are made, with those of the datasets before.
+        made: u64,
+        /// Bytes of the file.
+        file: u64,
+        /// Bytes that are allowed.
+        most: u64,
+    },
     /// A number that points beyond an array.
     #[error("row {row} is {value}, but only {limit} are there: export the file again")]
     Range {

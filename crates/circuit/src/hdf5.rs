@@ -7,6 +7,7 @@ use std::path::Path;
 
 use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File, VlenStringReadOptions};
 
+use neurotess_formats::budget::{Budget, Overdrawn};
 use neurotess_formats::capacity::{self, Excess};
 use neurotess_formats::indices::{self, IndexError};
 use neurotess_formats::{layout_5, regular};
@@ -19,6 +20,7 @@ pub(crate) struct Store {
     name: String,
     /// Bytes of the file.
     size: u64,
+    budget: Budget,
 }
 
 /// A dataset of one value per row.
@@ -31,6 +33,9 @@ pub(crate) enum Column {
         indices: Vec<u32>,
     },
 }
+
+/// What a number becomes.
+const BYTES_OF_NUMBER: u64 = 8;
 
 /// Most rows that one dataset of nodes may have: their number is 32 bits wide.
 const MAX_ROWS: u64 = u32::MAX as u64;
@@ -61,6 +66,7 @@ impl Store {
         match open(path) {
             Ok(file) => Ok(Self {
                 size: file.file_size(),
+                budget: Budget::new(file.file_size()),
                 file,
                 name,
             }),
@@ -163,6 +169,25 @@ impl Store {
         }
     }
 
+    /// Takes so many bytes for what is made of a dataset.
+    pub(crate) fn afford(&self, path: &str, bytes: u64) -> Result<(), CircuitError> {
+        let taken = self.budget.take(bytes);
+        taken.map_err(|overdrawn| self.fault(path, large(overdrawn)))
+    }
+
+    /// An error if one chunk of a dataset becomes more than is allowed. Whoever reads one number of it unpacks all.
+    pub(crate) fn afford_chunk(&self, path: &str) -> Result<(), CircuitError> {
+        let dataset = self.dataset(path)?;
+        let fault = |e: hdf5_pure::Error| self.fault(path, hdf5(&e));
+        let Some(chunk) = dataset.chunk_shape().map_err(fault)? else {
+            return Ok(());
+        };
+        let bytes = dataset.element_size().map_err(fault)?.max(1);
+        let made = chunk.iter().fold(bytes, |all, &n| all.saturating_mul(n));
+        let allowed = self.budget.allows(made);
+        allowed.map_err(|overdrawn| self.fault(path, large(overdrawn)))
+    }
+
     /// Rows of a dataset that must have one dimension, and no more than the file can hold.
     pub(crate) fn rows(&self, path: &str) -> Result<u64, CircuitError> {
         match self.shape(path)?[..] {
@@ -223,6 +248,10 @@ impl Store {
             return Err(self.fault(path, Fault::Shape { found, expected }));
         }
         self.believe(path)?;
+        self.afford(
+            path,
+            rows.saturating_mul(columns).saturating_mul(BYTES_OF_NUMBER),
+        )?;
         let values = self.dataset(path)?.read_f64();
         values.map_err(|e| self.fault(path, hdf5(&e)))
     }
@@ -244,6 +273,7 @@ impl Store {
         read: impl FnOnce(&Dataset) -> Result<Vec<T>, Fault>,
     ) -> Result<Vec<T>, CircuitError> {
         let rows = self.rows(path)?;
+        self.afford(path, rows.saturating_mul(BYTES_OF_NUMBER))?;
         let values = read(&self.dataset(path)?).map_err(|fault| self.fault(path, fault))?;
         if values.len() as u64 != rows {
             let (found, expected) = (vec![values.len() as u64], format!("[{rows}]"));
@@ -259,6 +289,7 @@ impl Store {
         from: u64,
         count: u64,
     ) -> Result<Vec<u64>, CircuitError> {
+        self.afford_chunk(path)?;
         let rows = indices::naturals(&self.dataset(path)?, Some((from, count)));
         rows.map_err(|e| self.fault(path, index(e, from)))
     }
@@ -270,6 +301,7 @@ impl Store {
         (from, count): (u64, u64),
         width: usize,
     ) -> Result<Vec<i64>, CircuitError> {
+        self.afford_chunk(path)?;
         let rows = indices::wholes(&self.dataset(path)?, Some((from, count)));
         rows.map_err(|e| {
             let e = match e {
@@ -295,6 +327,7 @@ impl Store {
         from: u64,
         count: u64,
     ) -> Result<Vec<f64>, CircuitError> {
+        self.afford_chunk(path)?;
         let rows = self.dataset(path)?.read_f64_rows(from, count);
         rows.map_err(|e| self.fault(path, hdf5(&e)))
     }
@@ -320,6 +353,7 @@ impl Store {
     /// Strings, each distinct one kept once: a million of four letters are not a million allocations.
     fn texts(&self, path: &str) -> Result<Column, CircuitError> {
         let rows = self.rows(path)?;
+        self.afford(path, rows.saturating_mul(BYTES_OF_NUMBER))?;
         let dataset = self.dataset(path)?;
         let mut distinct = Distinct::default();
         let visited = dataset.visit_vlen_strings(self.payload(), |text| distinct.push(text));
@@ -384,6 +418,11 @@ impl Store {
         let all = of_dataset.or_else(|_| self.file.group(path).and_then(|g| g.attrs()));
         all.ok()?.get(name)?.as_str().map(str::to_owned)
     }
+}
+
+fn large(overdrawn: Overdrawn) -> Fault {
+    let Overdrawn { made, file, most } = overdrawn;
+    Fault::Large { made, file, most }
 }
 
 /// The fault of an index; `from`: the row of the first that was asked for.

@@ -96,7 +96,8 @@ pub enum Fault {
     },
     /// Packed, and far larger than any tracing.
     #[error(
-        "it unpacks to more than {most} bytes, which no tracing does: unpack it by hand if you trust it"
+        "it unpacks to more than {most} bytes, which no tracing does: if you trust it, use --allow-large (in Python \
+         allow_large=True), or unpack it by hand"
     )]
     PackedTooLarge {
         /// Bytes that were allowed.
@@ -333,6 +334,21 @@ pub enum Fault {
         declared: u64,
         /// What the file has room for.
         possible: u64,
+    },
+    /// More would be made of the file than is likely.
+    #[error(
+        "dataset '{dataset}' would become {made} bytes of a file of {file}, more than the {most} that are allowed: if the file is right, use \
+         --allow-large (in Python allow_large=True)"
+    )]
+    Large {
+        /// The dataset's path.
+        dataset: String,
+        /// Bytes that are made, with those of the datasets before.
+        made: u64,
+        /// Bytes of the file.
+        file: u64,
+        /// Bytes that are allowed.
+        most: u64,
     },
     /// A row of a dataset is wrong.
     #[error("dataset '{dataset}', row {row}: {fault}")]

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use crate::budget::{Budget, Overdrawn};
 use crate::indices::{self, IndexError};
 use crate::{Fault, capacity, layout_5};
 
@@ -11,10 +12,14 @@ pub(crate) struct Store {
     file: hdf5_pure::File,
     /// Bytes of the file.
     size: u64,
+    budget: Budget,
     /// A group that most is asked of, with its path and a slash: to find it among thousands takes long, so it is done
     /// once.
     focus: Option<(String, hdf5_pure::Group)>,
 }
+
+/// What a number becomes: itself, and its part of a point, a section and a morphology.
+const BYTES_OF_NUMBER: u64 = 24;
 
 /// A table of numbers.
 pub(crate) struct Table<T> {
@@ -38,6 +43,7 @@ impl Store {
         Ok(Self {
             file,
             size,
+            budget: Budget::new(size),
             focus: None,
         })
     }
@@ -49,6 +55,7 @@ impl Store {
         Ok(Self {
             file,
             size,
+            budget: Budget::new(size),
             focus: None,
         })
     }
@@ -170,6 +177,16 @@ impl Store {
                 dataset: path.into(),
                 declared,
                 possible,
+            });
+        }
+        let numbers = rows.saturating_mul(columns as u64);
+        let made = self.budget.take(numbers.saturating_mul(BYTES_OF_NUMBER));
+        if let Err(Overdrawn { made, file, most }) = made {
+            return Err(Fault::Large {
+                dataset: path.into(),
+                made,
+                file,
+                most,
             });
         }
         let values = read(&dataset)?;

@@ -26,6 +26,7 @@
 
 #[cfg(feature = "asc")]
 pub mod asc;
+pub mod budget;
 #[cfg(feature = "h5")]
 pub mod capacity;
 mod error;

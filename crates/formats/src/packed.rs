@@ -5,24 +5,19 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-use crate::Fault;
+use crate::{Fault, budget};
 
 /// First bytes of every file of gzip; no format of morphologies begins so.
 const GZIP: &[u8] = b"\x1f\x8b";
-/// Tracings become five times smaller; a file that unpacks to more than so many times its size, and to more than
-/// [`SMALL`], is made to fill memory.
-const MAX_RATIO: u64 = 200;
-/// Bytes that any file may unpack to.
-const SMALL: u64 = 1 << 26;
 
 /// The content of a file of gzip, and any other as it is.
 pub(crate) fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, Fault> {
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }
-    let most = SMALL.max(MAX_RATIO.saturating_mul(bytes.len() as u64));
+    let most = budget::most(bytes.len() as u64);
     let mut content = Vec::new();
-    let mut unpacking = MultiGzDecoder::new(&*bytes).take(most + 1);
+    let mut unpacking = MultiGzDecoder::new(&*bytes).take(most.saturating_add(1));
     match unpacking.read_to_end(&mut content) {
         Ok(_) if content.len() as u64 > most => Err(Fault::PackedTooLarge { most }),
         Ok(_) => Ok(content),
@@ -82,7 +77,7 @@ mod tests {
 
     #[test]
     fn what_would_fill_memory_is_refused() {
-        let bomb = packed(&vec![b' '; SMALL as usize + (1 << 20)]);
+        let bomb = packed(&vec![b' '; 103_000_000]);
         let fault = unpacked(bomb).expect_err("too large");
         assert!(matches!(fault, Fault::PackedTooLarge { .. }), "{fault}");
     }

@@ -25,6 +25,9 @@ pub(crate) struct Common {
     /// Show no progress bar, not even on a terminal
     #[arg(long, global = true)]
     pub(crate) no_progress: bool,
+    /// Read files that are packed so well that more than 20 times their size and 100 MB is made of them
+    #[arg(long, global = true)]
+    pub(crate) allow_large: bool,
     /// Color messages
     #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
     pub(crate) color: Color,

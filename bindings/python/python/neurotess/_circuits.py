@@ -37,9 +37,13 @@ class Circuit(DrawnCircuit):
     """A circuit: SONATA, a network of Snudda, a scene of nsol or one of your own.
 
     `path` is a configuration, or the folder of one; of Snudda, `network-synapses.hdf5` or its folder. Parts that are missing are warned of.
+
+    Of each HDF5 file 20 times its size and 100 MB may be made; `allow_large` allows more, in this process from then on.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], *, allow_large: bool = False) -> None:
+        if allow_large:
+            _neurotess.allow_large()
         self._circuit = _neurotess.Circuit(path)
         self._path = os.fspath(path)
         self._tables: dict[str, pd.DataFrame] = {}

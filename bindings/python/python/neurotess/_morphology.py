@@ -359,12 +359,12 @@ if TYPE_CHECKING:
 
     @overload
     def read(
-        source: Files, *, format: str | None = None, name: str | None = None, strict: bool = False
+        source: Files, *, format: str | None = None, name: str | None = None, strict: bool = False, allow_large: bool = False
     ) -> list[Morphology]: ...
 
     @overload
     def read(
-        source: File, *, format: str | None = None, name: str | None = None, strict: bool = False
+        source: File, *, format: str | None = None, name: str | None = None, strict: bool = False, allow_large: bool = False
     ) -> Morphology: ...
 
 
@@ -374,6 +374,7 @@ def read(
     format: str | None = None,
     name: str | None = None,
     strict: bool = False,
+    allow_large: bool = False,
 ) -> Morphology | list[Morphology]:
     """Reads a morphology: SWC, Neurolucida ASC or XML, Blue Brain's H5, NeuroML, SNT's traces, skeletons of
     webKnossos and KNOSSOS, and JSON of MouseLight and CATMAID.
@@ -386,6 +387,9 @@ def read(
     What is odd in the file is warned of (`ReadWarning`), and stays in `Morphology.warnings`. With `strict` it
     is an error.
 
+    Of a packed file (HDF5, gzip) 20 times its size and 100 MB may be made; `allow_large` allows more, in this process
+    from then on.
+
     Raises `ReadError`, with file, line and message; it is a ``FileNotFoundError`` too where there is no file.
 
     >>> import neurotess as nt
@@ -393,6 +397,8 @@ def read(
     >>> cell.soma
     <Soma: point, radius 5 µm>
     """
+    if allow_large:
+        _neurotess.allow_large()
     if isinstance(source, (str, os.PathLike)) and os.path.isdir(expanded(source)):
         source = files_of(source)
     if isinstance(source, (list, tuple)):

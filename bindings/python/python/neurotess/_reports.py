@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Report:
     """A recording: values of compartments over time, or spikes. Times are ms.
 
-    Values are read from the file when they are asked for. `circuit`: whose cells it is of; `Circuit.report` gives it.
+    Values are read from the file when they are asked for. `circuit`: whose cells it is of; `Circuit.report` gives it. `allow_large`: as of `Circuit`.
     """
 
     def __init__(
@@ -34,7 +34,10 @@ class Report:
         *,
         circuit: Circuit | None = None,
     ) -> None:
+        allow_large: bool = False,
         self._report = _neurotess.Report(path)
+        if allow_large:
+            _neurotess.allow_large()
         self._path = os.fspath(path)
         names = self._report.populations
         if population is None:

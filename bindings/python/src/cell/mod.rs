@@ -463,6 +463,12 @@ impl Cell {
     }
 }
 
+/// From now on files may become as large as what they hold.
+#[pyfunction]
+pub(crate) fn allow_large() {
+    formats::budget::allow_large();
+}
+
 /// The number that a program gives the file's section with which each section begins.
 fn section_numbers(cell: &Morphology, program: Program) -> Vec<i64> {
     let numbers = SectionNumbers::of(cell, program).of_sections();

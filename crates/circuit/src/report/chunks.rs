@@ -96,14 +96,15 @@ impl Table {
             let reason = "it declares more chunks than the file can hold".into();
             return Err(store.fault(path, Fault::Hdf5 { reason }));
         }
+        store.afford_chunk(path)?;
         let datatype = dataset.datatype();
         let datatype = datatype.map_err(|e| store.fault(path, hdf5(&e)))?;
         let number = number(&datatype);
-        let access = match number {
         if let (Datatype::FloatingPoint { size, .. }, None) = (&datatype, number) {
             let reason = format!("its floating-point numbers of {size} bytes are none of IEEE 754");
             return Err(store.fault(path, Fault::Hdf5 { reason }));
         }
+        let access = match number {
             Some(number) => access(&dataset, number).map_err(|e| store.fault(path, hdf5(&e)))?,
             None => Access::Rows,
         };
@@ -339,8 +340,8 @@ impl Number {
             own.reverse();
         }
         match *own {
-            [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
             [a, b] => half(u16::from_le_bytes([a, b])),
+            [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
             [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
             _ => f32::NAN,
         }
@@ -369,11 +370,11 @@ fn number(datatype: &Datatype) -> Option<Number> {
     else {
         return None;
     };
-    let big_endian = match byte_order {
     // Others of as many bytes, like bfloat16.
     if *size == 2 && (layout.exponent_size, layout.mantissa_size) != (5, 10) {
         return None;
     }
+    let big_endian = match byte_order {
         DatatypeByteOrder::LittleEndian => false,
         DatatypeByteOrder::BigEndian => true,
         _ => return None,

@@ -27,6 +27,9 @@ pub(crate) struct Table<'a> {
     groups: Vec<Group>,
 }
 
+/// What a node becomes besides its columns: a place, a rotation, a template, rows of groups.
+const BYTES_OF_NODE: u64 = 64;
+
 /// Nodes that share datasets.
 struct Group {
     path: String,
@@ -53,6 +56,7 @@ impl<'a> Table<'a> {
         let path = format!("nodes/{population}");
         let type_path = format!("{path}/node_type_id");
         let n = rows_of(store, &path)?;
+        store.afford(&path, n.saturating_mul(BYTES_OF_NODE))?;
         let type_ids = if store.has(&type_path) {
             store.wholes(&type_path)?
         } else {
