@@ -205,12 +205,14 @@ impl Drawing {
         series: Option<GivenSeries<'_>>,
         meshes: Option<GivenMeshValues<'_>>,
         scale: Option<Vec<Rgb>>,
+        times: Option<Vec<f64>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
         let (own, time) = own_numbers(values, series)?;
         let colors = DrawingColors {
             own,
             time,
+            times,
             meshes: meshes.map(mesh_values).transpose()?,
             scale,
         };

@@ -25,7 +25,7 @@ use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Role, SectionNumber, SwcType, Vertex};
-use neurotess_morphology::{Morphology, Soma};
+use neurotess_morphology::{Morphology, NeuriteKind, Soma};
 
 use soma::first_rings::RingRequests;
 use soma::hubs::{self, Hub};
@@ -110,6 +110,25 @@ pub fn generate_timed(
     generate_stoppable(morphology, options, clock, &AtomicBool::new(false))
 }
 
+/// What is to be said of kinds that are asked for and that no section has: of usual ones only where there is none, since they
+/// may be asked for of many cells.
+pub fn unused_kinds<'m>(
+    cells: impl IntoIterator<Item = &'m Morphology>,
+    kinds: Option<&[NeuriteKind]>,
+) -> Option<String> {
+    let kinds = kinds?;
+    let mut unused: Vec<i32> = kinds.iter().map(|kind| kind.0).collect();
+    for cell in cells {
+        unused.retain(|&kind| !cell.sections.iter().any(|section| section.kind.0 == kind));
+    }
+    let is_usual = |kind: &i32| (0..=4).contains(kind);
+    if unused.len() < kinds.len() {
+        unused.retain(|kind| !is_usual(kind));
+    }
+    let names: Vec<String> = unused.iter().map(i32::to_string).collect();
+    (!names.is_empty()).then(|| format!("no point is of type {}", names.join(", ")))
+}
+
 /// [`generate_timed`], which ends soon after another thread sets `stopped`.
 ///
 /// # Errors
@@ -151,6 +170,9 @@ fn labeled(
     stop: Stop<'_>,
 ) -> Result<Generated, GenerateError> {
     let mut warnings = Warnings::default();
+    if let Some(message) = unused_kinds([morphology], options.kinds.as_deref()) {
+        warnings.add("types_unused", None, &message);
+    }
     let as_neurites = soma::as_neurites(morphology, options, &mut warnings);
     let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref(), &as_neurites);
     mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 41] = [
+pub(crate) const CODES: [&str; 42] = [
     "branch_repeated",
     "branches_separated",
     "branches_touch",
@@ -45,6 +45,7 @@ pub(crate) const CODES: [&str; 41] = [
     "soma_radius_mended",
     "soma_rounded",
     "stems_gathered",
+    "types_unused",
 ];
 
 /// One cause with its count and the first sample concerned.

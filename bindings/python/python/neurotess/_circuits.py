@@ -253,9 +253,10 @@ class Circuit(DrawnCircuit):
 
     # Recordings
 
-    def report(self, name: str | os.PathLike[str]) -> Report:
-        """A report or a file of spikes: one that the configuration names, or a file."""
-        return Report(self.reports.get(os.fspath(name), os.fspath(name)), circuit=self)
+    def report(self, name: str | os.PathLike[str], *, population: str | None = None) -> Report:
+        """A report or a file of spikes: one that the configuration names, or a file. Where it has several populations of
+        nodes, `population` says which."""
+        return Report(self.reports.get(os.fspath(name), os.fspath(name)), population, circuit=self)
 
     def render(self, **options: Unpack[RenderOptions]) -> Image:
         """A picture of the circuit: `neurotess.render` with this circuit.
@@ -265,7 +266,7 @@ class Circuit(DrawnCircuit):
         if options.get("time") is not None and options.get("report") is None:
             files = self.reports.values()
             on_cells = (file for file in files if self._circuit.elements(file) == "section")
-            options["report"] = next((file for file in on_cells if not Report(file).is_of_spikes), None)
+            options["report"] = next((file for file in on_cells if not _neurotess.Report(file).is_of_spikes), None)
         return render(self, **options)
 
     if TYPE_CHECKING:

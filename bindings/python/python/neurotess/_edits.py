@@ -11,6 +11,7 @@ from ._cells import cell_of
 from ._errors import NeurotessWarning, OptionError, missing_file
 from ._morphology import Morphology, _warn
 from ._sources import package_of, read_cell
+from ._units import plain
 from ._errors import with_given
 
 TYPE_CHECKING = False
@@ -177,7 +178,7 @@ def _rows(matrix: ArrayLike | None, translate: Sequence[float] | None) -> str:
     rows = np.zeros((3, 4))
     rows[:, : given.shape[1]] = given[:3]
     if translate is not None:
-        shift = np.asarray(translate, dtype=float)
+        shift = np.asarray(plain("translate=", translate, "um"), dtype=float)
         if shift.shape != (3,):
             raise ValueError(f"translate={translate!r}: (x, y, z) in µm is needed")
         rows[:, 3] += shift
@@ -188,7 +189,7 @@ def _places(places: ArrayLike) -> list[list[float]]:
     """Rows of three numbers."""
     import numpy as np
 
-    rows = np.asarray(places, dtype=float)
+    rows = np.asarray(plain("spines", places, "um"), dtype=float)
     if rows.size == 0:
         return []
     if rows.ndim != 2 or rows.shape[1] != 3:

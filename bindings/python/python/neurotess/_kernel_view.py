@@ -165,6 +165,7 @@ class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
     # Making
 
     def _set_report(self, report: str) -> None:
+        from . import _neurotess
         from ._circuits import Circuit
         from ._reports import Report
 
@@ -172,7 +173,8 @@ class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
             raise ValueError("a report needs a circuit, whose cells have its values")
         path = self._what.reports.get(report, report)
         self._options["report"] = path
-        self._set_times(Report(path).times.tolist())
+        first = _neurotess.Report(path).populations[:1]
+        self._set_times(Report(path, *first).times.tolist())
 
     def _set_times(self, times: list[float]) -> None:
         """All frames become pictures of the scene."""

@@ -7,6 +7,7 @@ import warnings
 
 from . import _neurotess
 from ._errors import NeurotessWarning
+from ._units import plain
 from ._own import check_name, color_column, holds_own, own_arrays, own_column
 from ._parts import Notice
 from ._packages import needed
@@ -62,7 +63,7 @@ class Mesh:
         """A mesh of vertices (n, 3) in µm and triangles (m, 3), without attributes, to check or save it."""
         import numpy as np
 
-        vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+        vertices = np.ascontiguousarray(plain("vertices", vertices, "um"), dtype=np.float64)
         faces = np.asarray(faces)
         for array, what in ((vertices, "vertices"), (faces, "faces")):
             if array.ndim != 2 or array.shape[1] != 3:
@@ -212,7 +213,7 @@ class Mesh:
         import numpy as np
 
         check_name(name)
-        column = np.array(values)
+        column = np.array(plain(f"values of {name!r}", values))
         if column.ndim not in (1, 2) or len(column) != len(self.vertices) or column[:1].size > 4:
             raise ValueError(
                 f"values of {name!r} have shape {column.shape}: one for each of the {len(self.vertices)} vertices is "

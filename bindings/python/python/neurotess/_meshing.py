@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections import deque
 
 from . import _neurotess, _options
 from ._cells import cell_of, quietly
+from ._errors import NeurotessWarning
 from ._meshes import Mesh
 from ._parts import Notice
 from ._sources import files_of, is_alone
@@ -141,6 +143,9 @@ def _mesh(
     recipe: _neurotess.Recipe, cell: Morphology, threads: int | None, stop: _neurotess.Stop | None = None
 ) -> Mesh:
     surface, report = recipe.mesh(cell._cell, threads, stop)
+    for told in report["warnings"]:
+        if told["code"] == "types_unused":
+            warnings.warn(NeurotessWarning(f"{cell.name}: {told['message']}: check types="), stacklevel=3)
     return _of(surface, report, cell.warnings, cell.name, cell)
 
 

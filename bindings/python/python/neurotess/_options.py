@@ -7,6 +7,7 @@ import os
 
 from . import _neurotess
 from ._errors import OptionError
+from ._units import plain, unit_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,7 +19,8 @@ def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
     """Options of meshes, checked."""
     try:
         files = {name: os.fspath(value) for name, value in options.items() if isinstance(value, os.PathLike)}
-        return _neurotess.Recipe({**options, **files})
+        lengths = {name: plain(f"{name}=", value, "um") for name, value in options.items() if unit_of(value) is not None}
+        return _neurotess.Recipe({**options, **files, **lengths})
     except OptionError as error:
         from ._errors import with_given
 
@@ -58,6 +60,9 @@ def word(value: Any) -> str:
         return value
     if isinstance(value, os.PathLike):
         return str(os.fspath(value))
+    if unit_of(value) is not None:
+        # Lengths: times are milliseconds before they come here.
+        value = plain("an option", value, "um")
     try:
         return str(operator.index(value))
     except TypeError:

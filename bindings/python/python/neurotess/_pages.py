@@ -10,6 +10,7 @@ from ._errors import NeurotessWarning, OptionError, RenderError, missing_file
 from ._groups import ungrouped
 from ._scene import SELECTION, DrawnCircuit, _cells, _chosen, _with_colors
 from ._sources import is_alone
+from ._units import times_of
 from ._values import values_of
 
 TYPE_CHECKING = False
@@ -194,7 +195,7 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
 
 def _content(what: Any, options: dict[str, Any]) -> dict[str, Any]:
     """Reports, synapses and points as the command line has them."""
-    report, time = options["report"], options["time"]
+    report, time = options["report"], times_of("time=", options["time"])
     if time is not None:
         if report is None:
             raise OptionError("time= needs report=, too", "time", "report= is needed, too")

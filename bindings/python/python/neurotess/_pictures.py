@@ -9,6 +9,7 @@ from . import _neurotess, _options
 from ._errors import NeurotessWarning, OptionError
 from ._groups import ungrouped
 from ._scene import DrawnCircuit, check_names, drawing_of
+from ._units import times_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -257,25 +258,44 @@ def film(
     what: Drawable | Iterable[Any],
     *,
     turntable: bool = False,
-    time: tuple[float, float, float] | tuple[float, float] | None = None,
+    time: tuple[float, float, float] | tuple[float, float] | ArrayLike | None = None,
     frames: int | None = None,
     **options: Any,
 ) -> Iterator[Image]:
     """Draws a series of pictures, one after the other: once around with `turntable` (36 pictures, or `frames`), or
-    through a report, or through `values` over time, with `time` (from, to, and the step, in ms, or `frames`). The options
-    are those of `render`.
+    through a report, or through `values` over time, with `time`: a tuple (from, to, and the step, in ms, or `frames`), or an
+    array of the times of all pictures. The options are those of `render`.
 
     >>> import neurotess as nt
     >>> for number, picture in enumerate(nt.film(cell, turntable=True)): # doctest: +SKIP
     ...     picture.save(f"turn_{number:03}.png")
     """
-    series = {"turntable": turntable, "time": _options.joined(time, ":"), "frames": frames}
+    between, at = _times(time)
+    series = {"turntable": turntable, "time": _options.joined(between, ":"), "frames": frames}
     check_names("film", render, options)
     options = ungrouped(options)
     _check_pairs({**options, "time": time})
     if not turntable and time is None:
         raise ValueError("a film needs turntable=True, or time=(from, to, step)")
-    return _pictures(what, {**options, **series})
+    if at is not None and (turntable or frames is not None):
+        raise ValueError("time= is of each picture: leave out turntable= and frames=")
+    return _pictures(what, {**options, **series}, at)
+
+
+def _times(time: Any) -> tuple[Any, list[float] | None]:
+    """The times of a film: from, to and step, or those of all pictures."""
+    import numpy as np
+
+    if time is None or isinstance(time, str):
+        return time, None
+    if isinstance(time, tuple):
+        return times_of("time=", time), None
+    times = np.asarray(times_of("time=", time), dtype=float)
+    if times.ndim != 1 or not times.size or not np.isfinite(times).all():
+        raise ValueError(f"time= is of shape {times.shape}: (from, to, step), or an array of times (ms) is needed")
+    if isinstance(time, list) and len(times) in (2, 3):
+        raise ValueError(f"time={time!r} may be from, to and step, or times: give a tuple, or an array")
+    return None, times.tolist()
 
 
 def _check_pairs(options: Mapping[str, Any]) -> None:
@@ -286,8 +306,8 @@ def _check_pairs(options: Mapping[str, Any]) -> None:
             raise OptionError(f"{name}= needs {other}=, too", name, f"{other}= is needed, too")
 
 
-def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
-    """All pictures that the options ask for."""
+def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = None) -> Iterator[Image]:
+    """All pictures that the options ask for, or those of these times."""
     given, options = options, dict(options)
     report = options.get("report")
     if report is not None and isinstance(what, DrawnCircuit):
@@ -295,7 +315,9 @@ def _pictures(what: Any, options: dict[str, Any]) -> Iterator[Image]:
     options["size"] = _options.joined(options.get("size"), "x")
     options["no_legend"] = not options.pop("legend", True)
     options["no_cache"] = not options.pop("cache", True)
-    drawing = drawing_of(what, options, options.pop("adapter", None), given)
+    if times is None and options.get("time") is not None:
+        options["time"] = times_of("time=", options["time"])
+    drawing = drawing_of(what, options, options.pop("adapter", None), given, times)
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(message), stacklevel=3)
     transparent = bool(options.get("transparent"))

@@ -8,6 +8,7 @@ import warnings
 from . import _neurotess
 from ._errors import ReadWarning
 from ._packages import needed
+from ._units import times_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,30 +34,32 @@ class Report:
         population: str | None = None,
         *,
         circuit: Circuit | None = None,
-    ) -> None:
         allow_large: bool = False,
-        self._report = _neurotess.Report(path)
+    ) -> None:
         if allow_large:
             _neurotess.allow_large()
+        self._report = _neurotess.Report(path)
         self._path = os.fspath(path)
         names = self._report.populations
+        if population is None and len(names) > 1:
+            raise ValueError(f"{self._path} has the populations {names}: say population=, one of them")
         if population is None:
             population = names[0] if names else ""
         if population not in names:
             raise ValueError(f"{self._path} has no population {population!r}: it has {names}")
         self.population: str = population
-        """The population that this is of; `Report(path, population)` is that of another."""
+        """The population that this is of. Where a file has several, one has to be named."""
         self._index = names.index(population)
         self._told: dict[str, Any] | None = None
         self._circuit = circuit
+        for message in self._report.warnings:
+            warnings.warn(ReadWarning(message), stacklevel=2)
 
     @property
     def path(self) -> str:
         """The file."""
         return self._path
 
-        for message in self._report.warnings:
-            warnings.warn(ReadWarning(message), stacklevel=2)
     @property
     def populations(self) -> list[str]:
         """Names of the populations in the file."""
@@ -173,6 +176,7 @@ class Report:
         import numpy as np
 
         first, end = 0, len(self.times)
+        start, stop = times_of("start=", start), times_of("stop=", stop)
         if start is not None:
             first = int(np.searchsorted(self.times, start - 1e-9))
         if stop is not None:
@@ -181,7 +185,7 @@ class Report:
 
     def at(self, time: float, node: int | None = None) -> NDArray[np.float32]:
         """Values (compartments,) of the frame that shows at a time (ms)."""
-        told = self._layout
+        told, time = self._layout, times_of("time", time)
         frame = int((time - told["start"]) / told["step"] + 1e-6)
         if not 0 <= frame < told["frames"] or time < told["start"]:
             raise ValueError(f"no frame shows at {time} ms")

@@ -76,9 +76,14 @@ def check_names(name: str, function: Callable[..., Any], options: dict[str, Any]
 
 
 def drawing_of(
-    what: Any, options: dict[str, Any], adapter: str | None, given: dict[str, Any]
+    what: Any,
+    options: dict[str, Any],
+    adapter: str | None,
+    given: dict[str, Any],
+    times: list[float] | None = None,
 ) -> _neurotess.Drawing:
-    """Cells or a circuit on the device; `given`: the options as the caller gave them, for messages."""
+    """Cells or a circuit on the device; `given`: the options as the caller gave them, for messages; `times`: of the
+    pictures."""
     # Not at the top: it takes as long to import as all the rest.
     import tempfile
 
@@ -108,7 +113,7 @@ def drawing_of(
         words = _options.arguments(options)
         colors = still, series, of_meshes, scale
         try:
-            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, *colors, adapter)
+            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, *colors, times, adapter)
         except OptionError as error:
             from ._errors import with_given
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ._places import distances_from_root
+from ._units import grayed
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class Times:
             )
         if array.shape[0] != self.count:
             array = array.T
-        return np.ascontiguousarray(array[self._frames], dtype=np.float32)
+        return grayed(what, array[self._frames])
 
 
 def columns_of(cell: Morphology, kind: str, numbers: NDArray[np.float32]) -> Columns:

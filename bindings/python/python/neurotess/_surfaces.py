@@ -10,6 +10,7 @@ from ._colors import text_of
 from ._errors import missing_file
 from ._meshes import Mesh, read_mesh
 from ._sources import is_alone, is_surface
+from ._units import grayed, plain, unit_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -94,8 +95,12 @@ def values_of_meshes(looks: list[dict[str, Any]], options: dict[str, Any]) -> Of
     for look, values in zip(looks, given, strict=True):
         if values is not None and look.get("color") is not None:
             raise ValueError(f"values= are what colors tell: leave out color={look['color']!r}")
-    numbers = [None if of is None else _numbers(look["mesh"], of) for look, of in zip(looks, given, strict=True)]
     title, unit = options.get("title"), options.get("unit")
+    if unit is None:
+        unit = next((own for own in map(unit_of, given) if own is not None), None)
+    numbers = [
+        None if of is None else _numbers(look["mesh"], of, unit) for look, of in zip(looks, given, strict=True)
+    ]
     if title is None:
         title = next((of for of in given if isinstance(of, str)), None)
     if options.get("values") is None:
@@ -103,7 +108,7 @@ def values_of_meshes(looks: list[dict[str, Any]], options: dict[str, Any]) -> Of
     return numbers, str(title or ""), str(unit or "")
 
 
-def _numbers(mesh: Mesh, values: Any) -> NDArray[np.float32]:
+def _numbers(mesh: Mesh, values: Any, unit: str | None) -> NDArray[np.float32]:
     """The numbers of the vertices, of an array or of an attribute by its name."""
     import numpy as np
 
@@ -113,7 +118,7 @@ def _numbers(mesh: Mesh, values: Any) -> NDArray[np.float32]:
             raise ValueError(f"values={values!r}: {mesh.name} has {_names(mesh.attributes)}")
         told = f"values={values!r} of {mesh.name}"
         values = mesh.attributes[values]
-    array = np.asarray(values)
+    array = np.asarray(plain(told, values, unit))
     count = len(mesh.vertices)
     if array.ndim == 2 and array.shape[1] == 1:
         array = array[:, 0]
@@ -121,7 +126,7 @@ def _numbers(mesh: Mesh, values: Any) -> NDArray[np.float32]:
         raise ValueError(f"{told} have shape {array.shape}: ({count},) is needed, a number for each vertex{_hint(mesh, array)}")
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{told} are not numbers, but {array.dtype}")
-    return np.ascontiguousarray(array, np.float32)
+    return grayed(told, array)
 
 
 def _hint(mesh: Mesh, array: NDArray[Any]) -> str:

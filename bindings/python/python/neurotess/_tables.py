@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ._units import plain, unit_of
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -44,7 +46,8 @@ def columns_of(
         found = list(table.T)
     else:
         names = list(table.dtype.names if isinstance(table, np.ndarray) else table.keys())
-        found = [np.asarray(table[_named(column, names)]) for column in NAMES]
+        found = [table[_named(column, names)] for column in NAMES]
+        found = [column if unit_of(column) else np.asarray(plain("a column", column)) for column in found]
     ids, types, x, y, z, radii, parents = found
     lengths = {len(column) for column in found}
     if len(lengths) > 1:
@@ -75,7 +78,7 @@ def _numbers(values: NDArray[Any], name: str) -> NDArray[np.float64]:
     import numpy as np
 
     try:
-        return np.ascontiguousarray(values, dtype=np.float64)
+        return np.ascontiguousarray(plain(f"column {name!r}", values, "um"), dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"column {name!r} is not of numbers: {error}") from None
 

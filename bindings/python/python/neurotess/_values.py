@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ._series import Times, columns_of, segments_of
+from ._units import grayed, plain, times_of, unit_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -46,17 +47,41 @@ def values_of(cells: list[Morphology], alone: bool, options: dict[str, Any]) -> 
         values = [values]
     elif isinstance(values, Mapping) or len(values) != len(cells):
         raise ValueError(f"values= of {len(cells)} cells are a list with an array, or None, for each")
+    if unit is None:
+        unit = next((own for own in map(_unit, values) if own is not None), None)
+    values = [_without_unit(cell, one, unit) for cell, one in zip(cells, values, strict=True)]
     pairs = list(zip(cells, values, strict=True))
     named = str(title or ""), str(unit or "")
     if times is None:
         if options.get("time") is not None:
             raise ValueError("time= needs times=, too: those of the frames of values=")
         return ([_of_cell(cell, one) for cell, one in pairs], *named), None
-    over_time = Times(times)
+    over_time = Times(times_of("times=", times))
     columns = [_over_time(cell, one, over_time) for cell, one in pairs]
-    time = options.pop("time", None)
+    time = times_of("time=", options.pop("time", None))
     ends = over_time.start, over_time.step
     return None, (columns, ends, *named, None if time is None else str(time))
+
+
+def _unit(values: Any) -> str | None:
+    """The unit that numbers of a cell have, if they have one."""
+    if isinstance(values, Mapping):
+        return next((unit for unit in map(unit_of, values.values()) if unit is not None), None)
+    return unit_of(values)
+
+
+def _without_unit(cell: Morphology, values: Any, unit: str | None) -> Any:
+    """Numbers of a cell in this unit, with NaN where they are masked."""
+    if values is None:
+        return None
+    what = f"values= of {cell.name}"
+    if not isinstance(values, Mapping):
+        return plain(what, values, unit)
+    # Of segments there is an array for each section.
+    return {
+        kind: [plain(what, one, unit) for one in array] if isinstance(array, (list, tuple)) else plain(what, array, unit)
+        for kind, array in values.items()
+    }
 
 
 def _over_time(cell: Morphology, values: Any, times: Times) -> Columns:
@@ -83,7 +108,7 @@ def _of_cell(cell: Morphology, values: Any) -> tuple[NDArray[np.float32], float]
             f"values= of {cell.name} are {array.dtype} of shape {array.shape}: one number for each is needed{over_time}"
         )
     kind = _kind(cell, len(array), kind)
-    numbers = array.astype(np.float32)
+    numbers = grayed(f"values= of {cell.name}", array)
     soma = len(cell.to_table()) - len(cell)
     if kind == "point":
         return numbers, np.nan

@@ -119,6 +119,9 @@ pub(crate) struct RenderArgs {
     /// Colors of numbers instead of a color map: of programs that have their own.
     #[arg(skip)]
     pub(crate) scale: Option<Vec<Rgb>>,
+    /// Times (ms) of all pictures instead of `--time`: of programs that have their own.
+    #[arg(skip)]
+    pub(crate) times: Option<Vec<f64>>,
     /// Leave out the end of the color map that is as light or as dark as the background. Without it
     /// that end has edges
     #[arg(long, help_heading = "Colors")]
@@ -323,6 +326,12 @@ impl RenderArgs {
     /// Wrong usage: `--frames` without a series, or a series in time that has no number of pictures
     /// or too many.
     pub(crate) fn series(&self) -> anyhow::Result<Option<u32>> {
+        if let Some(times) = &self.times {
+            return match u32::try_from(times.len()) {
+                Ok(count) if count <= MOST => Ok(Some(count)),
+                _ => usage(format!("{} times are more than {MOST}", times.len())),
+            };
+        }
         match self.time {
             Some(Time::Series(..)) => {
                 Ok(times(self.time, self.frames)?.map(|times| times.len() as u32))

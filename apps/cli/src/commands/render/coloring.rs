@@ -7,6 +7,8 @@ use neurotess::coloring::{
     self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet,
     MeshValues, OwnNumbers, Recording, by_attribute, by_values,
 };
+use neurotess::generate::unused_kinds;
+use neurotess::morphology::NeuriteKind;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
 use neurotess::render::{Gpu, Image, StaticPicture};
@@ -163,6 +165,15 @@ pub(crate) fn of_pictures(
     own: Option<OwnNumbers>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
+    let kinds: Vec<NeuriteKind> = args
+        .types
+        .iter()
+        .flat_map(|types| types.0.clone())
+        .collect();
+    let kinds = (!args.types.is_empty()).then_some(&kinds[..]);
+    if let Some(unused) = unused_kinds(cells.iter().map(|cell| &cell.morphology), kinds) {
+        reporter.warning(&format!("{unused}: check --types"));
+    }
     let scheme = scheme(args);
     let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();
     let cells: Vec<Cell<'_>> = cells
@@ -267,6 +278,9 @@ fn over_time(
     scheme: &ColorScheme,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
+    for warning in &recording.warnings {
+        reporter.warning(warning);
+    }
     let without = recording.without();
     if without > 0 {
         let (all, file) = (recording.places(), &recording.file);
@@ -277,14 +291,14 @@ fn over_time(
     if let Some(unknown) = recording.unknown_sections() {
         reporter.warning(&format!("{}: {unknown}", recording.file));
     }
-    if args.time.is_none() && recording.is_of_spikes() {
+    if args.time.is_none() && args.times.is_none() && recording.is_of_spikes() {
         let file = &recording.file;
         anyhow::bail!("{file}: spikes flash at a time: choose one with --time");
     }
-    for warning in &recording.warnings {
-        reporter.warning(warning);
-    }
-    let times = times::times(args.time, args.frames)?.unwrap_or_else(|| vec![recording.time.start]);
+    let times = match &args.times {
+        Some(times) => times.clone(),
+        None => times::times(args.time, args.frames)?.unwrap_or_else(|| vec![recording.time.start]),
+    };
     let range = match args.range {
         Some(range) => range,
         None => {

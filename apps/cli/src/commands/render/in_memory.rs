@@ -56,6 +56,8 @@ pub struct DrawingColors {
     /// Of numbers over time the times of the pictures, as `--time` has them.
     pub time: Option<String>,
     /// Numbers of the meshes beside the cells, in the order of the options.
+    /// Times (ms) of the pictures, one by one, instead of `time`.
+    pub times: Option<Vec<f64>>,
     pub meshes: Option<MeshValues>,
     /// Colors of numbers, instead of a color map.
     pub scale: Option<Vec<Rgb>>,
@@ -127,6 +129,7 @@ impl Drawing {
         if let Some(time) = colors.time {
             args.time = Some(time.parse().map_err(DrawError::Option)?);
         }
+        args.times = colors.times;
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
         let made = Self::made(
