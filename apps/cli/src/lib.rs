@@ -36,10 +36,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         if e.is::<Usage>() {
             code = 2;
         }
-        reporter.error(&format!("{e:#}"));
+        reporter.error(&report::told(&e));
     }
     if let Err(e) = reporter.close() {
-        reporter.error(&format!("{e:#}"));
+        reporter.error(&report::told(&e));
     }
     match reporter.failures() {
         0 => u8::from(reporter.found_differences()),

@@ -4,9 +4,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use glam::DVec3;
 use neurotess_formats::{is_json_tracing, regular};
 
-use crate::{Circuit, CircuitError, blue_config, nsol, placed, scene, snudda, sonata, table};
+use crate::{
+    Circuit, CircuitError, Population, Warning, blue_config, nsol, placed, scene, snudda, sonata,
+    table,
+};
 
 impl Circuit {
     /// Opens a circuit: a SONATA configuration (the circuit's or the simulation's), the folder that
@@ -17,7 +21,17 @@ impl Circuit {
     /// What is wrong with the file, or with all populations. What is wrong with one of several is in
     /// [`Circuit::failures`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, CircuitError> {
-        let path = path.as_ref();
+        let mut circuit = Self::read(path.as_ref())?;
+        let far = circuit
+            .populations
+            .iter()
+            .filter_map(|p| far_away(&circuit.file, p));
+        let far: Vec<Warning> = far.collect();
+        circuit.warnings.extend(far);
+        Ok(circuit)
+    }
+
+    fn read(path: &Path) -> Result<Self, CircuitError> {
         if path.is_dir() {
             return match (sonata::find(path), snudda::find(path)) {
                 (Err(_), Some(network)) => snudda::open(&network),
@@ -41,6 +55,22 @@ impl Circuit {
         }
         sonata::open(path)
     }
+}
+
+/// From this coordinate on (µm), 32 bits have steps of a micrometer, the thickness of a neurite: 17 m.
+const FAR: f64 = (1_u64 << 24) as f64;
+
+/// What is said of nodes so far away that numbers of 32 bits do not resolve their cells.
+fn far_away(file: &str, population: &Population) -> Option<Warning> {
+    let far = |place: &&DVec3| place.is_finite() && place.abs().max_element() >= FAR;
+    let count = population.positions.iter().filter(far).count() as u64;
+    let first = population.positions.iter().position(|place| far(&place))?;
+    let message = format!(
+        "{count} nodes are so far away that numbers of 32 bits do not resolve their cells, the first is {} at {} µm: \
+         is the unit the micrometer?",
+        population.ids[first], population.positions[first]
+    );
+    Some(Warning::new(file, population.name.clone(), "far_away", message).times(count))
 }
 
 /// Whether a file, or a folder, is to be opened as a circuit. A folder is if it has the configuration

@@ -135,11 +135,18 @@ impl Element<'_> {
 
     /// A number that has to be there.
     pub(crate) fn real(&self, key: &'static str) -> Located<f64> {
+        self.real_within(key, Morphology::MAX_COORDINATE)
+    }
+
+    /// A diameter that has to be there, of which the half is kept.
+    pub(crate) fn diameter(&self, key: &'static str) -> Located<f64> {
+        self.real_within(key, 2.0 * Morphology::MAX_COORDINATE)
+    }
+
+    fn real_within(&self, key: &'static str, limit: f64) -> Located<f64> {
         let text = self.attribute(key).unwrap_or_default();
         let number = fast_float2::parse::<f64, _>(text.trim());
-        let in_range = number
-            .ok()
-            .filter(|n| n.abs() <= Morphology::MAX_COORDINATE);
+        let in_range = number.ok().filter(|n| n.abs() <= limit);
         in_range.ok_or_else(|| self.fault(key, text))
     }
 
@@ -166,7 +173,8 @@ impl Element<'_> {
         if text.trim().eq_ignore_ascii_case("nan") || text.is_empty() {
             return Ok(None);
         }
-        self.real(key).map(|size| (size >= 0.0).then_some(size))
+        // A radius is judged again where the cell is built.
+        self.diameter(key).map(|size| (size >= 0.0).then_some(size))
     }
 
     /// Three numbers that have to be there.

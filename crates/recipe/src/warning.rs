@@ -1,6 +1,7 @@
 //! What is said of a cell's mesh.
 
-use neurotess_mesh::{Quality, Walled};
+use glam::DAffine3;
+use neurotess_mesh::{CoarseMesh, Format, Quality, Role, Walled};
 use neurotess_union::{Kin, UnionReport};
 
 use crate::merged::Merged;
@@ -9,6 +10,8 @@ use crate::pieces;
 /// Solvers lose accuracy, and mesh generators time, where one in a hundred triangles has a smaller angle
 /// (degrees).
 const THIN_TRIANGLES: f64 = 10.0;
+/// From this share of the radius on, rounding is told: surfaces become rough, and lose volume.
+const ROUNDED: f64 = 0.02;
 /// Most pieces that are named.
 const NAMED_PIECES: usize = 8;
 
@@ -106,6 +109,15 @@ pub enum SurfaceWarning {
     },
     /// No neurite leaves a soma, so that there are no walls.
     NoWalls,
+    /// The file's coordinates are so large that rounding changes the shape.
+    Rounded {
+        /// The largest coordinate (µm).
+        at: f64,
+        /// By how much it moves points (µm).
+        by: f64,
+        /// The median radius (µm).
+        radius: f64,
+    },
 }
 
 impl SurfaceWarning {
@@ -123,6 +135,7 @@ impl SurfaceWarning {
             Self::ThinTriangles { .. } => "thin_triangles",
             Self::Thinned { .. } => "thinned",
             Self::WallLeftOut { .. } | Self::NoWalls => "no_wall",
+            Self::Rounded { .. } => "coordinates_rounded",
         }
     }
 
@@ -140,7 +153,7 @@ impl SurfaceWarning {
             | Self::WallLeftOut { sample, .. } => *sample,
             Self::SeveralPieces { samples } => *samples.first()?,
             Self::Thinned { samples } => return samples.first().copied(),
-            Self::ThinTriangles { .. } | Self::NoWalls => return None,
+            Self::ThinTriangles { .. } | Self::NoWalls | Self::Rounded { .. } => return None,
         };
         Some(i64::from(sample))
     }
@@ -157,7 +170,7 @@ impl SurfaceWarning {
             Self::SeveralPieces { samples } => samples.len(),
             Self::Thinned { samples } => samples.len(),
             Self::WallLeftOut { walls, .. } => *walls,
-            Self::ThinTriangles { .. } | Self::NoWalls => 1,
+            Self::ThinTriangles { .. } | Self::NoWalls | Self::Rounded { .. } => 1,
         };
         count as u64
     }
@@ -172,6 +185,43 @@ impl SurfaceWarning {
             warnings.extend((samples.len() > 1).then_some(Self::SeveralPieces { samples }));
         }
         warnings
+    }
+
+    /// What is said of a file whose coordinates are so large that rounding shows: of numbers of 32 bits in STL, of 64 bits
+    /// in other formats. None where it moves points by less than a fiftieth of the median radius.
+    pub fn of_rounding(
+        mesh: &CoarseMesh,
+        format: Format,
+        world_from_cell: Option<DAffine3>,
+    ) -> Option<Self> {
+        let place = world_from_cell.unwrap_or(DAffine3::IDENTITY);
+        let scale = place.matrix3.determinant().abs().cbrt();
+        let of_neurites = mesh.tracing.iter().filter(|t| t.role != Role::Soma);
+        let mut radii: Vec<f64> = of_neurites.map(|t| f64::from(t.radius) * scale).collect();
+        if radii.is_empty() {
+            radii.extend(mesh.tracing.iter().map(|t| f64::from(t.radius) * scale));
+        }
+        let middle = radii.len() / 2;
+        let (_, &mut radius, _) = radii
+            .get_mut(..)
+            .filter(|all| !all.is_empty())?
+            .select_nth_unstable_by(middle, f64::total_cmp);
+        let at = mesh.tracing.iter().map(|t| {
+            let center = mesh.origin + t.center.as_dvec3();
+            place.transform_point3(center).abs().max_element()
+        });
+        let at = at.fold(0.0, f64::max);
+        let half_step = match format {
+            Format::Stl => f64::from(f32::EPSILON),
+            _ => f64::EPSILON,
+        };
+        let by = at * half_step / 2.0;
+        (by > ROUNDED * radius).then_some(Self::Rounded { at, by, radius })
+    }
+
+    /// Whether nothing of the cell's shape is left.
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Rounded { by, radius, .. } if by > radius)
     }
 
     /// What is said of walls that are not there.
@@ -314,6 +364,11 @@ impl std::fmt::Display for SurfaceWarning {
                  there",
             ),
             Self::NoWalls => f.write_str("no neurite leaves a soma: there are no walls"),
+            Self::Rounded { at, by, radius } => write!(
+                f,
+                "coordinates of up to {at:.3e} µm are rounded by {by:.1e} µm in this file, and the median radius is \
+                 {radius:.3} µm: write ply, or move the cell towards the origin"
+            ),
         }
     }
 }

@@ -272,6 +272,25 @@ class Mesh:
 
     # Elsewhere
 
+    def _warn_of_rounding(self, kind: str) -> None:
+        """STL has numbers of 32 bits: far from the origin they round."""
+        import numpy as np
+
+        radii = self.attributes["radius"]
+        radii = radii[radii > 0]
+        if kind.lower().lstrip(".") != "stl" or not len(radii):
+            return
+        at, radius = float(np.abs(self.vertices).max()), float(np.median(radii))
+        by = at * 2.0**-24
+        if by > 0.02 * radius:
+            warnings.warn(
+                NeurotessWarning(
+                    f"{self.name}: at {at:.3g} µm, stl rounds by {by:.3g} µm, and the median radius is {radius:.3g} µm: "
+                    "save as ply, or move the mesh towards the origin"
+                ),
+                stacklevel=3,
+            )
+
     def save(
         self,
         path: str | os.PathLike[str],
@@ -298,6 +317,7 @@ class Mesh:
         numbers from 0 to 1 is colors itself.
         """
         kind = format or os.path.splitext(os.fspath(path))[1]
+        self._warn_of_rounding(kind)
         own = [own_column(name, values) for name, values in self._own.items()]
         if own and not holds_own(kind):
             told = f"{os.fspath(path)} has no {', '.join(self._own)}: PLY, VTU and GLB hold attributes of your own"

@@ -447,7 +447,9 @@ impl<'a> Parser<'a, '_> {
 }
 
 fn in_range(number: f64, column: usize) -> Result<f64, Fault> {
-    if number.abs() <= Morphology::MAX_COORDINATE {
+    // Of a diameter the half is kept.
+    let kept = if column == 3 { number / 2.0 } else { number };
+    if kept.abs() <= Morphology::MAX_COORDINATE {
         return Ok(number);
     }
     Err(Fault::OutOfRange {

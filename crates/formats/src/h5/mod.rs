@@ -324,7 +324,9 @@ impl Tables {
 
     fn sample(&self, point: usize) -> Result<Sample, Fault> {
         let row = self.points.row(point);
-        if let Some(column) = row
+        // Of a diameter the half is kept.
+        let kept = [row[0], row[1], row[2], row[3] / 2.0];
+        if let Some(column) = kept
             .iter()
             .position(|x| x.is_nan() || x.abs() > Morphology::MAX_COORDINATE)
         {

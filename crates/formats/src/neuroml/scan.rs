@@ -132,7 +132,7 @@ impl Records {
 fn end(element: &Element) -> Located<Sample> {
     Ok(Sample {
         position: element.reals(["x", "y", "z"])?,
-        radius: element.real("diameter")? / 2.0,
+        radius: element.diameter("diameter")? / 2.0,
         line: element.line,
     })
 }

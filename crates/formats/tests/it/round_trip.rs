@@ -134,3 +134,18 @@ fn sixty_thousand_somata_in_one_chain_are_one_soma_and_points() {
     assert_eq!(cell.somata.len(), 1);
     assert_eq!(read(&written(&cell)), cell);
 }
+
+/// Formats that hold diameters read what they were given, up to the largest radius.
+#[neurotess_testing::test]
+fn the_largest_radii_come_back_from_every_format() {
+    let cell = read(b"1 1 0 0 0 5 -1\n2 3 0 9 0 9e36 1\n3 3 0 30 0 9e36 2\n");
+    for format in neurotess_formats::Format::WRITTEN {
+        let mut file = std::io::Cursor::new(Vec::new());
+        neurotess_formats::write(&cell, format, &mut file).expect("written");
+        let options = ReadOptions::default();
+        let back = neurotess_formats::read_bytes(file.into_inner(), "cell", Some(format), &options);
+        let back = back.unwrap_or_else(|e| panic!("{format:?}: {e}"));
+        let radii = back.morphology.points.iter().map(|point| point.radius);
+        assert!(radii.clone().all(|radius| radius == 9e36), "{format:?}");
+    }
+}

@@ -13,7 +13,7 @@ use super::{markers, recording};
 use crate::commands::render::DrawError;
 use crate::options::markers::MarkerArgs;
 use crate::options::time::Time;
-use crate::report::{Common, Reporter, Usage, first_paragraph};
+use crate::report::{self, Common, Reporter, Usage, first_paragraph};
 
 /// The options alone, without the program around them.
 #[derive(Debug, Parser)]
@@ -108,7 +108,7 @@ impl PageContent {
 
 fn told(error: &anyhow::Error) -> DrawError {
     match error.is::<Usage>() {
-        true => DrawError::Option(format!("{error:#}")),
-        false => DrawError::Failed(format!("{error:#}")),
+        true => DrawError::Option(report::told(&error)),
+        false => DrawError::Failed(report::told(&error)),
     }
 }

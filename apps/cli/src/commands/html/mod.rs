@@ -11,6 +11,7 @@ use std::io::Write;
 use itertools::Itertools;
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{Cell, ColorScheme, OwnColors};
+use neurotess::output::write_into;
 use neurotess::render::{Look, Placement};
 use neurotess::web::{
     MAX_PAGE_BYTES, PageCell, PageOptions, PageRecording, shared_page, usual_title,
@@ -86,9 +87,8 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
         let size = size_text(bytes);
         anyhow::bail!("the page would have {size}: leave out cells, or use --force");
     }
-    let mut output = output::begin(&args.out, args.force)?;
-    output.file().write_all(made.html.as_bytes())?;
-    output.finish()?;
+    let output = output::begin(&args.out, args.force)?;
+    write_into(output, &args.out, |to| to.write_all(made.html.as_bytes()))?;
     let points = count(made.points, "tracing point");
     let (of, size) = (count(placements.len(), "cell"), size_text(bytes));
     reporter.result(&format!("{}: {of}, {points}, {size}", document.out));

@@ -10,7 +10,8 @@ use neurotess::formats::{self, ReadOptions};
 use neurotess::mesh as surfaces;
 use neurotess::recipe::{
     CellFiles, CellMesh, CellSurface, CrossingsReport, FileSurface, PartFile, Progress,
-    SeparationReport, SmoothingReport, Stage, Warning, Watch, WrittenFiles, mesh_watched,
+    SeparationReport, SmoothingReport, Stage, SurfaceWarning, Warning, Watch, WrittenFiles,
+    mesh_watched,
 };
 use serde::Serialize;
 
@@ -218,6 +219,17 @@ pub(super) fn finish(
     let surface = FileSurface::new(cell_surface.surface(), &options.files, &Watch::default());
     let surface = surface.map_err(|e| Failure(format!("{file}: {e}")))?;
     let surface = surface.placed(world_from_cell);
+    let coarse = &meshed.generated.mesh;
+    let rounded = SurfaceWarning::of_rounding(coarse, options.files.format, world_from_cell);
+    if let Some(SurfaceWarning::Rounded { at, by, radius }) =
+        rounded.as_ref().filter(|r| r.is_lost())
+    {
+        return Err(Failure(format!(
+            "{file}: at {at:.3e} µm, {} rounds by {by:.3e} µm, more than the radius of {radius:.3e} µm: correct its place, or \
+             move it towards the origin",
+            options.files.format
+        )));
+    }
     let written = write(&surface, options, to, watchers, &mut seconds);
     let written = written.map_err(|Failure(what)| Failure(format!("{file}: {what}")))?;
     let clock = Instant::now();
@@ -257,6 +269,7 @@ pub(super) fn finish(
         warnings: of_file
             .chain(mesh.warnings)
             .chain(of_walls)
+            .chain(rounded.map(Warning::Surface))
             .map(|w| CellWarning::from(&w))
             .collect(),
     };

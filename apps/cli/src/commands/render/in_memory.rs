@@ -28,7 +28,7 @@ use super::scene::RenderScene;
 use super::vertex_source::{self, PictureSource};
 use super::{bounds, cameras, checks, coloring, draw, scene};
 use crate::options::size::Size;
-use crate::report::{Common, Entry, Failed, Reporter, Usage};
+use crate::report::{self, Common, Entry, Failed, Reporter, Usage};
 
 /// The options alone, without the program around them.
 #[derive(Debug, Parser)]
@@ -144,7 +144,7 @@ impl Drawing {
             Ok(drawing) => Ok((drawing, told)),
             Err(e) if e.is::<Usage>() => Err(DrawError::Option(format!("{e:#}"))),
             Err(e) => {
-                told.push(format!("{e:#}"));
+                told.push(report::told(&e));
                 Err(DrawError::Failed(told.join("; ")))
             }
         }
@@ -265,13 +265,13 @@ impl Drawing {
                 &options,
                 (&mut self.source, &mut self.renderer),
             );
-            self.film = drawn.map_err(|e| DrawError::Failed(format!("{e:#}")))?;
+            self.film = drawn.map_err(|e| DrawError::Failed(report::told(&e)))?;
         }
         let Some(film) = &mut self.film else {
             return self.drawn(gpu, picture, camera, &options);
         };
         let colored = film.picture(gpu, &self.colored, picture);
-        let (mut image, _) = colored.map_err(|e| DrawError::Failed(format!("{e:#}")))?;
+        let (mut image, _) = colored.map_err(|e| DrawError::Failed(report::told(&e)))?;
         let legend = self.colored.legend(picture);
         let overlay = self
             .overlay
@@ -339,7 +339,7 @@ impl Drawing {
         let (table, legend) = self
             .colored
             .picture(picture)
-            .map_err(|e| failed(format!("{e:#}")))?;
+            .map_err(|e| failed(report::told(&e)))?;
         let legend = (!self.args.no_legend).then_some(&legend);
         let overlay = self.overlay.again(legend, &camera);
         let [width, height] = options.size;
@@ -463,7 +463,7 @@ fn parsed(
     command.extend(options.into_iter().map(std::ffi::OsString::from));
     command.extend(["--out=-".into(), "--".into(), path.into()]);
     let options = Options::try_parse_from(command);
-    options.map_err(|e| DrawError::Option(crate::report::first_paragraph(&e)))
+    options.map_err(|e| DrawError::Option(report::first_paragraph(&e)))
 }
 
 /// The scene of cells that are in memory, each in its own coordinates.

@@ -26,8 +26,10 @@ mod times;
 mod values;
 mod vertex_source;
 
-use anyhow::Context;
+use std::io;
+
 use neurotess::coloring::MarkerSet;
+use neurotess::output::write_into;
 use neurotess::render::Gpu;
 
 use crate::io::output;
@@ -117,9 +119,10 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     stats.cache = cache.map(Into::into);
     stats.colors = colored.closest.as_ref().map(Into::into);
     if let Some(path) = &args.stats {
-        let mut output = output::begin(path, args.force)?;
-        serde_json::to_writer_pretty(output.file(), &stats).context("stats")?;
-        output.finish()?;
+        let output = output::begin(path, args.force)?;
+        write_into(output, path, |to| {
+            serde_json::to_writer_pretty(to, &stats).map_err(io::Error::from)
+        })?;
     }
     for file in &files {
         reporter.result(&format!("{}: {}", file.display(), stats.line()));

@@ -338,3 +338,32 @@ fn a_scene_of_files_is_a_circuit() {
         "{errors:?}"
     );
 }
+
+/// A cell so far away that numbers do not resolve it is no mesh of volume 0, and where STL's 32 bits do not, that is told.
+#[neurotess_testing::test]
+fn cells_that_rounding_would_lose_are_told() {
+    let work = Work::new();
+    work.file("a.swc", crate::work::SMALL);
+    let table = |x: &str| format!("file,x,y,z\na.swc,{x},0,0\na.swc,0,0,0\n");
+    work.file("far.csv", table("1e30"));
+    let run = work.run("mesh far.csv -o far --level 1 --json").exits(1);
+    let told = run.stderr();
+    assert!(
+        told.contains("(far_away)") && told.contains("more than the radius of"),
+        "{told}"
+    );
+    assert_eq!(work.names("far").len(), 1, "the other one");
+    work.file("near.csv", table("1e6"));
+    let codes = |format: &str| {
+        let run = work.run(&format!(
+            "mesh near.csv -o {format} --format {format} --level 1 --json"
+        ));
+        let warnings = run.exits(0).json()[0]["warnings"].clone();
+        let codes = warnings.as_array().expect("a list").iter();
+        codes
+            .map(|w| w["code"].as_str().unwrap_or_default().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert!(codes("stl").contains(&"coordinates_rounded".to_owned()));
+    assert!(!codes("ply").contains(&"coordinates_rounded".to_owned()));
+}
