@@ -14,6 +14,7 @@ mod marks;
 mod notes;
 mod origin;
 mod size;
+mod skeleton;
 mod somata;
 mod tree;
 mod within;
@@ -205,6 +206,9 @@ fn build(
     morphology.file_sections = collector.finish(&morphology.sections);
     let is_of_soma = |i: u32| is_soma(&nodes[i as usize]) && somata.of(i) != NONE;
     notes.radii(nodes, is_of_soma);
+    if morphology.somata.is_empty() {
+        skeleton::note(nodes, &mut notes);
+    }
     match size::size(nodes, is_of_soma) {
         Size::Plausible => {}
         Size::TooLarge => notes.add(Oddity::TooLarge, 0),

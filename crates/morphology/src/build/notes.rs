@@ -39,6 +39,10 @@ pub enum Oddity {
     TooLarge,
     /// The cell is so small that its unit is likely the millimeter or the meter.
     TooSmall,
+    /// A skeleton whose radii are all one round number, as exporters write that know none.
+    EqualRadii,
+    /// A skeleton without types, one sample of which is far thicker than all others, as a soma is.
+    ThickSample,
 }
 
 impl Oddity {
@@ -60,6 +64,8 @@ impl Oddity {
             Self::NegativeRadius => "negative_radius",
             Self::TooLarge => "too_large",
             Self::TooSmall => "too_small",
+            Self::EqualRadii => "equal_radii",
+            Self::ThickSample => "thick_sample",
         }
     }
 }
@@ -82,6 +88,8 @@ impl fmt::Display for Oddity {
             Self::NegativeRadius => "negative radius: kept, measured as zero",
             Self::TooLarge => "the cell is far larger than neurons are: its unit may be the nanometer or the voxel",
             Self::TooSmall => "the cell is far smaller than neurons are: its unit may be the millimeter or the meter",
+            Self::EqualRadii => "all radii are one round number, as if none were known: export them, too (meshparty: radius=), or give those of the neurites by --radius-factor",
+            Self::ThickSample => "a sample without type is far thicker than all others, as a soma: if it is one, give it type 1",
         })
     }
 }
