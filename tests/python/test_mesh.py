@@ -6,6 +6,7 @@ import gc
 import pickle
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import neurotess as nt
@@ -269,3 +270,38 @@ def test_cells_far_from_the_origin_are_as_smooth(cell: nt.Morphology) -> None:
     assert far.vertices.min() > 40_000 and far.closed
     near = nt.mesh(nt.Morphology.from_table(cell.to_table()), level=2)
     assert far.volume == pytest.approx(near.volume, rel=1e-3)
+
+
+def test_too_little_memory_is_an_error_beforehand() -> None:
+    """In a process of its own, whose memory is limited."""
+    script = """
+import resource, sys
+import neurotess as nt
+cell = nt.synth("pyramidal", seed=1, points=2000)
+nt.mesh(cell, level=1)
+with open("/proc/self/status") as status:
+    used = next(int(line.split()[1]) for line in status if line.startswith("VmSize:"))
+resource.setrlimit(resource.RLIMIT_AS, (1024 * used + (400 << 20),) * 2)
+for options in ({"level": 64}, {"level": 64, "crossings": "merge"}):
+    try:
+        nt.mesh(cell, threads=1, **options)
+    except MemoryError as error:
+        assert "of memory are needed, and" in str(error) and "level" in str(error), error
+    else:
+        sys.exit(f"{options} was made")
+assert len(nt.mesh(cell, level=1, threads=1).vertices)
+"""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("other systems do not tell")
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_stl_far_from_the_origin_is_told(cell: nt.Morphology, tmp_path: Path) -> None:
+    far = nt.mesh(nt.edit(cell, translate=(2e6, 0, 0)), level=1)
+    with pytest.warns(nt.NeurotessWarning, match="stl rounds by .* save as ply"):
+        far.save(tmp_path / "far.stl")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        far.save(tmp_path / "far.ply")
+        nt.mesh(cell, level=1).save(tmp_path / "near.stl")

@@ -16,7 +16,7 @@ use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
 use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput, Picked};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -411,5 +411,6 @@ pub(crate) fn undrawn(py: Python<'_>, error: &DrawError) -> PyErr {
     match error {
         DrawError::Option(message) => errors::option(py, message),
         DrawError::Failed(message) => errors::render(py, message),
+        DrawError::Memory(message) => PyMemoryError::new_err(message.clone()),
     }
 }

@@ -6,6 +6,7 @@ use neurotess_generate::GenerateError;
 use neurotess_mesh::{Format, Unsound};
 use neurotess_union::UnionError;
 
+use crate::memory::TooLittleMemory;
 use crate::words::RINGS;
 use crate::{MeshOption, Spelling};
 
@@ -193,6 +194,9 @@ pub enum MeshError {
     /// Indices of vertices have 32 bits.
     #[error("the surface would have {0} vertices, of which 4294967295 at most can be told apart")]
     TooManyVertices(usize),
+    /// There is too little memory to merge what crosses.
+    #[error(transparent)]
+    Memory(#[from] TooLittleMemory),
     /// A fault of ours.
     #[error(transparent)]
     Unsound(#[from] Unsound),
@@ -226,7 +230,7 @@ impl MeshError {
         let remedy = match self {
             Self::Options(error) => return error.told(spelling),
             Self::Empty => format!(": check {} and {}", name(O::Types), name(O::Soma)),
-            Self::TooManyVertices(_) => format!(
+            Self::TooManyVertices(_) | Self::Memory(_) => format!(
                 ": lower {}, or choose {}",
                 name(O::Level),
                 name(O::MaxError)

@@ -30,6 +30,7 @@ mod checks;
 mod draw;
 mod error;
 mod files;
+pub mod memory;
 mod merged;
 mod named;
 mod names;

@@ -13,7 +13,8 @@ pub(crate) fn vertex_count(mesh: &CoarseMesh, options: &MeshOptions) -> usize {
     };
     let most_of_patch = (highest as usize + 1).pow(2);
     let most = mesh.patches.len().saturating_mul(most_of_patch);
-    match most > u32::MAX as usize {
+    // Merging needs memory for each.
+    match most > u32::MAX as usize || options.merges() {
         true => refined(mesh, options, true).vertex_count(),
         false => most,
     }

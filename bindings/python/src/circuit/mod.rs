@@ -22,7 +22,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Pair};
 use crate::cell::Cell;
 use crate::errors;
-use crate::surface::{Columns, Recipe, Stopped, Surface, meshed, of_made, taken};
+use crate::surface::{Columns, Recipe, Surface, Unmade, Untaken, meshed, of_made, taken};
 use crate::work::{Stop, detached, released, stoppable};
 pub(crate) use recordings::Report;
 
@@ -344,7 +344,7 @@ impl Mesher {
             let (columns, report) = taken(&mesh, |surface| placed(surface, at, stopped))?;
             Ok((columns, report, Arc::clone(&mesh.morphology)))
         })?;
-        let made: Result<_, String> = made;
+        let made: Result<_, Unmade> = made;
         let (made, morphology) = match made {
             Ok((columns, report, morphology)) => (Ok((columns, report)), Some(morphology)),
             Err(error) => (Err(error), None),
@@ -359,7 +359,7 @@ fn placed(
     surface: &dyn neurotess::mesh::Surface,
     at: DAffine3,
     stopped: &AtomicBool,
-) -> Result<Columns, Stopped> {
+) -> Result<Columns, Untaken> {
     Columns::of(&Placed::new(surface, at), stopped)
 }
 
@@ -367,8 +367,8 @@ fn placed(
 fn kept(
     meshes: &Meshes,
     template: u32,
-    make: impl FnOnce() -> Result<CellMesh, String>,
-) -> Result<Arc<CellMesh>, String> {
+    make: impl FnOnce() -> Result<CellMesh, Unmade>,
+) -> Result<Arc<CellMesh>, Unmade> {
     let lock = || meshes.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(mesh) = lock().get(&template) {
         return Ok(Arc::clone(mesh));

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 use neurotess::mesh::{Faces, Surface, SurfaceVertex};
+use neurotess::recipe::memory::{self, TooLittleMemory};
 use rayon::prelude::*;
 
 /// Arrays of a surface. Positions are in the coordinates of the tracing.
@@ -20,13 +21,21 @@ pub(crate) struct Columns {
     pub(super) faces: Faces,
 }
 
-/// Another thread asked to stop.
+/// Why there are no arrays.
 #[derive(Debug)]
-pub(crate) struct Stopped;
+pub(crate) enum Untaken {
+    /// Another thread asked to stop.
+    Stopped,
+    /// There is too little memory for them.
+    Memory(TooLittleMemory),
+}
 
-impl Display for Stopped {
+impl Display for Untaken {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str("stopped")
+        match self {
+            Self::Stopped => f.write_str("stopped"),
+            Self::Memory(e) => write!(f, "{e}: choose a lower level="),
+        }
     }
 }
 
@@ -39,14 +48,14 @@ impl Columns {
     ///
     /// # Errors
     /// Another thread has set `stopped`.
-    pub(crate) fn of(surface: &dyn Surface, stopped: &AtomicBool) -> Result<Self, Stopped> {
-        let mut columns = Self::zero(surface);
+    pub(crate) fn of(surface: &dyn Surface, stopped: &AtomicBool) -> Result<Self, Untaken> {
+        let mut columns = Self::zero(surface).map_err(Untaken::Memory)?;
         let at_once = BLOCKS_PER_THREAD * rayon::current_num_threads();
         let mut made: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); at_once];
         let mut rest = columns.rows();
         for first in (0..surface.vertex_blocks()).step_by(at_once) {
             if stopped.load(Ordering::Relaxed) {
-                return Err(Stopped);
+                return Err(Untaken::Stopped);
             }
             let blocks = at_once.min(surface.vertex_blocks() - first);
             let made = made[..blocks].par_iter_mut().enumerate();
@@ -66,7 +75,7 @@ impl Columns {
         let (mut triangles, mut quads) = (&mut triangles[..], &mut quads[..]);
         for first in (0..surface.face_blocks()).step_by(at_once) {
             if stopped.load(Ordering::Relaxed) {
-                return Err(Stopped);
+                return Err(Untaken::Stopped);
             }
             let blocks = at_once.min(surface.face_blocks() - first);
             let made = made[..blocks].par_iter_mut().enumerate();
@@ -93,21 +102,28 @@ impl Columns {
 
     /// Columns of the surface's size. Zeros cost nothing until they are written over: the system gives pages of
     /// them when they are first touched.
-    fn zero(surface: &dyn Surface) -> Self {
-        let count = surface.vertex_count();
-        Self {
+    fn zero(surface: &dyn Surface) -> Result<Self, TooLittleMemory> {
+        let (count, triangles, quads) = (
+            surface.vertex_count(),
+            surface.triangle_count(),
+            surface.quad_count(),
+        );
+        // All of them together, before the first.
+        let [all, of_triangles, of_quads] = [count, triangles, quads].map(|n| n as u64);
+        memory::check(52 * all + 12 * of_triangles + 16 * of_quads)?;
+        Ok(Self {
             origin: surface.origin(),
-            vertices: vec![[0.0; 3]; count],
-            normals: vec![[0.0; 3]; count],
-            types: vec![0; count],
-            points: vec![0; count],
-            sections: vec![0; count],
-            radii: vec![0.0; count],
+            vertices: memory::filled([0.0; 3], count)?,
+            normals: memory::filled([0.0; 3], count)?,
+            types: memory::filled(0, count)?,
+            points: memory::filled(0, count)?,
+            sections: memory::filled(0, count)?,
+            radii: memory::filled(0.0, count)?,
             faces: Faces {
-                triangles: vec![[0; 3]; surface.triangle_count()],
-                quads: vec![[0; 4]; surface.quad_count()],
+                triangles: memory::filled([0; 3], triangles)?,
+                quads: memory::filled([0; 4], quads)?,
             },
-        }
+        })
     }
 
     fn rows(&mut self) -> Rows<'_> {

@@ -12,11 +12,11 @@ use neurotess::mesh::{
 };
 use neurotess::morphology::Morphology;
 use neurotess::recipe::{
-    CellMesh, FileOptions, FileSurface, MeshOptions, MeshReport, SaveError, Spelling, Watch,
-    mesh_watched,
+    CellMesh, FileOptions, FileSurface, MeshError, MeshOptions, MeshReport, SaveError, Spelling,
+    Watch, mesh_watched,
 };
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -24,7 +24,7 @@ use crate::cell::{Cell, existing};
 use crate::options::mesh_options;
 use crate::work::{Stop, detached, released, stoppable};
 use crate::{arrays, errors, json};
-pub(crate) use columns::{Columns, Stopped};
+pub(crate) use columns::{Columns, Untaken};
 use slices::Slices;
 
 /// How cells are meshed.
@@ -66,9 +66,29 @@ pub(crate) fn meshed(
     morphology: Arc<Morphology>,
     options: &MeshOptions,
     stopped: &AtomicBool,
-) -> Result<CellMesh, String> {
+) -> Result<CellMesh, Unmade> {
     let cell = mesh_watched(morphology, options, &Watch::stopped_by(stopped));
-    cell.map_err(|e| e.told(Spelling::Keyword))
+    cell.map_err(|e| {
+        let told = e.told(Spelling::Keyword);
+        match e {
+            MeshError::Memory(_) => Unmade::Memory(told),
+            _ => Unmade::Mesh(told),
+        }
+    })
+}
+
+/// Why there is no mesh.
+pub(crate) enum Unmade {
+    /// The cell, or the options.
+    Mesh(String),
+    /// There is too little memory.
+    Memory(String),
+}
+
+impl From<String> for Unmade {
+    fn from(told: String) -> Self {
+        Self::Mesh(told)
+    }
 }
 
 /// What is taken of a mesh's surface, and what is known of it; an error if it is no surface around its tracing, which is
@@ -76,7 +96,7 @@ pub(crate) fn meshed(
 pub(crate) fn taken<T>(
     cell: &CellMesh,
     take: impl FnOnce(&dyn mesh::Surface) -> T,
-) -> Result<(T, MeshReport), String> {
+) -> Result<(T, MeshReport), Unmade> {
     let surface = cell.surface();
     let report = cell.report_of(&surface);
     let watched = Watched::new(surface.surface());
@@ -88,10 +108,17 @@ pub(crate) fn taken<T>(
 /// A surface that was made, or why not.
 pub(crate) fn of_made(
     py: Python<'_>,
-    made: Result<(Result<Columns, Stopped>, MeshReport), String>,
+    made: Result<(Result<Columns, Untaken>, MeshReport), Unmade>,
 ) -> PyResult<(Surface, Bound<'_, PyAny>)> {
-    let made = made.and_then(|(columns, report)| Ok((columns.map_err(|e| e.to_string())?, report)));
-    let (columns, report) = made.map_err(|e| errors::mesh(py, &e))?;
+    let made = made.and_then(|(columns, report)| match columns {
+        Ok(columns) => Ok((columns, report)),
+        Err(e @ Untaken::Memory(_)) => Err(Unmade::Memory(e.to_string())),
+        Err(e) => Err(Unmade::Mesh(e.to_string())),
+    });
+    let (columns, report) = made.map_err(|e| match e {
+        Unmade::Mesh(told) => errors::mesh(py, &told),
+        Unmade::Memory(told) => PyMemoryError::new_err(told),
+    })?;
     Ok((Surface::new(py, columns)?, json::serialized(py, &report)?))
 }
 
@@ -216,7 +243,11 @@ impl Surface {
         })?;
         match read {
             Ok((columns, own)) => {
-                let surface = Self::new(py, columns.map_err(errors::bug)?)?;
+                let columns = columns.map_err(|e| match e {
+                    Untaken::Memory(_) => PyMemoryError::new_err(e.to_string()),
+                    Untaken::Stopped => errors::bug(e),
+                })?;
+                let surface = Self::new(py, columns)?;
                 let own: PyResult<_> = own.into_iter().map(|a| own_array(py, a)).collect();
                 Ok((surface, own?))
             }

@@ -3,11 +3,15 @@
 use std::path::Path;
 
 use neurotess::mesh::{Format, Surface};
+use neurotess::recipe::memory;
 
 use crate::report::{Failure, Reporter};
 
 /// Size (bytes) from which on it is reported beforehand.
 const LARGE: u64 = 1 << 30;
+
+/// Bytes of a vertex whose place is kept.
+const BYTES_OF_CORNER: u64 = 12;
 
 /// Reports that a file will be large.
 ///
@@ -19,6 +23,12 @@ pub(super) fn tell(
     out: &Path,
     reporter: &Reporter,
 ) -> Result<(), Failure> {
+    if format == Format::Stl {
+        // Its faces hold corners, so that all of these are in memory.
+        let needed = (surface.vertex_count() as u64).saturating_mul(BYTES_OF_CORNER);
+        memory::check(needed)
+            .map_err(|e| Failure(format!("{e}: choose a lower --level, or write ply")))?;
+    }
     let bytes = estimate(surface, format);
     if bytes < LARGE {
         return Ok(());

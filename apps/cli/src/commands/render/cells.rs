@@ -1,16 +1,17 @@
 //! Reads and meshes the inputs.
 
-use std::collections::HashMap;
-use std::path::PathBuf;
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use neurotess::cache::Cache;
 use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
-use neurotess::formats::{ReadOptions, Warning};
+use neurotess::formats::{self, ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions, Generated};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
+use neurotess::recipe::memory;
 use neurotess::render::bounds::bounds;
 use neurotess::render::{BoundingSphere, Proxy};
 
@@ -54,6 +55,7 @@ pub(crate) fn read(
         cache,
         stopped: reporter.stopped(),
     };
+    check_memory(inputs, meshing.exploring)?;
     let read = ReadOptions {
         strict: args.strict,
         ..ReadOptions::default()
@@ -69,6 +71,26 @@ pub(crate) fn read(
         }
     }
     Ok(entries)
+}
+
+/// Whether memory holds what files of this size become, at the least: of 200,000 points in 9.6 MB of SWC, drawing took 44
+/// times as much, and exploration 10 times.
+fn check_memory(inputs: &Inputs, exploring: bool) -> anyhow::Result<()> {
+    // A container has many cells.
+    let files = inputs
+        .files
+        .iter()
+        .map(|input| formats::member(&input.path).0);
+    let files: BTreeSet<&Path> = files.collect();
+    let sizes = files
+        .into_iter()
+        .map(|file| std::fs::metadata(file).map_or(0, |data| data.len()));
+    let bytes = sizes.fold(0, u64::saturating_add);
+    let needed = bytes.saturating_mul(if exploring { 6 } else { 25 });
+    let checked = memory::check(needed);
+    checked.map_err(|e| {
+        anyhow::Error::new(e).context(format!("{e}: choose fewer cells, or --lod exploration"))
+    })
 }
 
 /// How cells are meshed.

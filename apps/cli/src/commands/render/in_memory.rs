@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{MarkerSet, MeshValues, OwnNumbers};
 use neurotess::morphology::{Morphology, SectionId, shape};
+use neurotess::recipe::memory::{self, TooLittleMemory};
 use neurotess::render::color::Rgb;
 use neurotess::render::overlay::Overlay;
 use neurotess::render::{
@@ -55,9 +56,9 @@ pub struct DrawingColors {
     pub own: Option<OwnNumbers>,
     /// Of numbers over time the times of the pictures, as `--time` has them.
     pub time: Option<String>,
-    /// Numbers of the meshes beside the cells, in the order of the options.
     /// Times (ms) of the pictures, one by one, instead of `time`.
     pub times: Option<Vec<f64>>,
+    /// Numbers of the meshes beside the cells, in the order of the options.
     pub meshes: Option<MeshValues>,
     /// Colors of numbers, instead of a color map.
     pub scale: Option<Vec<Rgb>>,
@@ -70,6 +71,8 @@ pub enum DrawError {
     Option(String),
     /// An input or the device fails, or another thread asked to stop.
     Failed(String),
+    /// There is too little memory.
+    Memory(String),
 }
 
 /// Cells on the device, to be drawn once or often.
@@ -126,10 +129,10 @@ impl Drawing {
             args.cells.list(nodes);
         }
         args.scale = colors.scale;
+        args.times = colors.times;
         if let Some(time) = colors.time {
             args.time = Some(time.parse().map_err(DrawError::Option)?);
         }
-        args.times = colors.times;
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
         let made = Self::made(
@@ -142,7 +145,8 @@ impl Drawing {
         let mut told = reporter.take_recorded();
         match made {
             Ok(drawing) => Ok((drawing, told)),
-            Err(e) if e.is::<Usage>() => Err(DrawError::Option(format!("{e:#}"))),
+            Err(e) if e.is::<TooLittleMemory>() => Err(DrawError::Memory(report::told(&e))),
+            Err(e) if e.is::<Usage>() => Err(DrawError::Option(report::told(&e))),
             Err(e) => {
                 told.push(report::told(&e));
                 Err(DrawError::Failed(told.join("; ")))
@@ -343,10 +347,13 @@ impl Drawing {
         let legend = (!self.args.no_legend).then_some(&legend);
         let overlay = self.overlay.again(legend, &camera);
         let [width, height] = options.size;
+        let bytes = 4 * width as usize * height as usize;
+        let pixels = memory::reserved(bytes);
         let mut whole = Image {
             width,
             height,
-            pixels: Vec::with_capacity(4 * width as usize * height as usize),
+            pixels: pixels
+                .map_err(|e| DrawError::Memory(format!("{e}: choose a smaller size=")))?,
         };
         let take = |top: u32, mut band: Image| {
             overlay.lay_on(top, &mut band);
