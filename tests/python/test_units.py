@@ -122,9 +122,12 @@ def test_types_that_no_point_has_are_told(cell: nt.Morphology) -> None:
     with pytest.warns(nt.NeurotessWarning, match="no point is of type 99"):
         mesh = nt.mesh(cell, types=[99], level=1)
     assert "types_unused" in [notice.code for notice in mesh.warnings]
+    with pytest.warns(nt.NeurotessWarning, match="no point is of type 99: check types="):
+        nt.html(cell, types=[99])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         nt.mesh(cell, types=["axon", "basal"], level=1)
+        nt.html(cell, types=["axon", "basal"])
 
 
 @pytest.mark.usefixtures("can_draw")

@@ -130,9 +130,10 @@ def _unmasked(given: Any) -> Any:
     import numpy as np
 
     if np.ma.isMaskedArray(given):
-        if given.dtype.kind not in "fiub":
-            return given
-        return given.astype(float).filled(np.nan) if given.mask.any() else np.asarray(given)
+        masked: Any = given
+        if masked.dtype.kind not in "fiub":
+            return masked
+        return masked.astype(float).filled(np.nan) if np.ma.is_masked(masked) else np.asarray(masked)
     if hasattr(given, "to_numpy") and getattr(getattr(given, "dtype", None), "na_value", None) is not None:
         try:
             return given.to_numpy(dtype=float, na_value=np.nan)

@@ -153,7 +153,10 @@ fn page(
         shown.cut(&content)?;
         let meshes = shown.meshes(&options, stopped)?;
         let meshed = (&meshes[..], options.radius_factor);
-        let page = Page::of(shown, meshed, &keywords, colors, own, &content)?;
+        let unused = shown.unused_kinds(options.kinds.as_deref());
+        let mut page = Page::of(shown, meshed, &keywords, colors, own, &content)?;
+        page.messages
+            .extend(unused.map(|unused| format!("{unused}: check types=")));
         match page.made.html.len() {
             bytes if bytes > MAX_PAGE_BYTES && !force => Err(Unmade::Large(bytes)),
             _ => Ok(page),

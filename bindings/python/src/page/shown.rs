@@ -6,9 +6,9 @@ use std::sync::atomic::AtomicBool;
 
 use neurotess::circuit::{self as circuits, Instance, NodeRef, soma_center};
 use neurotess::coloring::{self, with_middles};
-use neurotess::generate::{GenerateOptions, generate_stoppable};
+use neurotess::generate::{GenerateOptions, generate_stoppable, unused_kinds};
 use neurotess::mesh::CoarseMesh;
-use neurotess::morphology::Morphology;
+use neurotess::morphology::{Morphology, NeuriteKind};
 use neurotess::render::Placement;
 use neurotess::web::PageCell;
 use neurotess_cli::embed::PageContent;
@@ -123,6 +123,11 @@ impl Shown {
             self.cells[cell] = Arc::new(with_middles(&self.cells[cell], &compartments));
         }
         Ok(())
+    }
+
+    /// See [`unused_kinds`].
+    pub(super) fn unused_kinds(&self, kinds: Option<&[NeuriteKind]>) -> Option<String> {
+        unused_kinds(self.cells.iter().map(|cell| &**cell), kinds)
     }
 
     pub(super) fn meshes(

@@ -108,7 +108,7 @@ impl PageContent {
 
 fn told(error: &anyhow::Error) -> DrawError {
     match error.is::<Usage>() {
-        true => DrawError::Option(report::told(&error)),
-        false => DrawError::Failed(report::told(&error)),
+        true => DrawError::Option(report::told(error)),
+        false => DrawError::Failed(report::told(error)),
     }
 }

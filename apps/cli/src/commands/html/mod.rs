@@ -20,6 +20,7 @@ use serde::Serialize;
 
 use crate::commands::render::{
     CircuitInstances, ColorBy as CliColorBy, MeshedCell, RenderArgs, RenderScene, read_scene, stem,
+    tell_unused_types,
 };
 use crate::io::output;
 use crate::report::{Entry, Failed, Reporter, count, usage};
@@ -59,6 +60,7 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
             Entry::Failed(entry) => failed.push(entry),
         }
     }
+    tell_unused_types(cells.iter(), &render, reporter);
     let mut document = Document {
         out: args.out.display().to_string(),
         bytes: 0,

@@ -165,15 +165,7 @@ pub(crate) fn of_pictures(
     own: Option<OwnNumbers>,
     reporter: &Reporter,
 ) -> anyhow::Result<PictureColors> {
-    let kinds: Vec<NeuriteKind> = args
-        .types
-        .iter()
-        .flat_map(|types| types.0.clone())
-        .collect();
-    let kinds = (!args.types.is_empty()).then_some(&kinds[..]);
-    if let Some(unused) = unused_kinds(cells.iter().map(|cell| &cell.morphology), kinds) {
-        reporter.warning(&format!("{unused}: check --types"));
-    }
+    tell_unused_types(cells.iter().copied(), args, reporter);
     let scheme = scheme(args);
     let names: Vec<String> = cells.iter().map(|cell| stem(&cell.file)).collect();
     let cells: Vec<Cell<'_>> = cells
@@ -246,6 +238,20 @@ fn scheme(args: &RenderArgs) -> ColorScheme {
         background,
         scale: args.color_scale(background),
         range: args.range,
+    }
+}
+
+/// Warns of types that are asked for and that no cell has.
+pub(crate) fn tell_unused_types<'c>(
+    cells: impl Iterator<Item = &'c MeshedCell>,
+    args: &RenderArgs,
+    reporter: &Reporter,
+) {
+    let kinds = args.types.iter().flat_map(|types| types.0.clone());
+    let kinds: Vec<NeuriteKind> = kinds.collect();
+    let kinds = (!kinds.is_empty()).then_some(&kinds[..]);
+    if let Some(unused) = unused_kinds(cells.map(|cell| &cell.morphology), kinds) {
+        reporter.warning(&format!("{unused}: check --types"));
     }
 }
 

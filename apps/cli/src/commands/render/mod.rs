@@ -37,7 +37,7 @@ use crate::report::{Entry, Reporter, usage};
 pub(crate) use args::{ColorBy, RenderArgs, color_maps, range};
 pub(crate) use cells::MeshedCell;
 pub(crate) use circuit_instances::CircuitInstances;
-pub(crate) use coloring::{by, stem};
+pub(crate) use coloring::{by, stem, tell_unused_types};
 pub use in_memory::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};
 use job::RenderJob;
 use meshes::SceneMeshes;
