@@ -46,7 +46,7 @@ pub(crate) use clearance::Disk;
 pub(crate) use cone::{RoundCone, outwards};
 pub(crate) use joint::JointShape;
 pub(crate) use path::{Inset, Joint, Label, Origin, Path, PathEnd, Plan, PlannedRing, RingKind};
-pub(crate) use shape::{InsetSite, not_too_steep};
+pub(crate) use shape::{InsetSite, not_too_steep, unit_across};
 
 /// What a fork becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::MayJoin;
 use super::clearance::Disk;
 use super::path::{Arm, Inset, Path, PathEnd, Plan, PlannedRing, RingKind};
+use super::shape::unit_across;
 use crate::tracing::{SomaSphere, off_segment};
 use crate::warning::Warnings;
 
@@ -193,9 +194,10 @@ impl<'a> Planes<'a> {
         match incoming {
             // Straight back: across the path, to the side that is left between the two legs, or to any.
             Some(incoming) if sum.length() <= 0.1 => {
-                let side = sum - incoming * sum.dot(incoming);
-                side.try_normalize()
-                    .unwrap_or_else(|| incoming.any_orthonormal_vector())
+                // Of a sum that is but rounding no part is.
+                let side = Some(sum).filter(|sum| sum.length() > 1e-9);
+                let side = side.and_then(|sum| unit_across(sum, incoming));
+                side.unwrap_or_else(|| incoming.any_orthonormal_vector())
             }
             _ => sum.try_normalize().unwrap_or(DVec3::Y),
         }

@@ -12,6 +12,8 @@ pub(super) const MIN_STEEP: f64 = 0.5;
 const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
 const MAX_SHEAR: f64 = 2.2;
+/// Least part of a vector across a direction that is more than rounding.
+const LEAST_ACROSS: f64 = 1e-7;
 /// Places along a branch where it is looked whether its trunk comes near it again.
 const TOP_STEPS: u32 = 8;
 
@@ -54,8 +56,7 @@ impl InsetSite {
     /// distance from the trunk is `lift` radii.
     pub(crate) fn shape(&self, trunk: &[RoundCone]) -> InsetShape {
         let normal = outwards(trunk, self.exit, 1e-3 * self.radius);
-        let ahead = (self.along - self.direction * self.along.dot(self.direction))
-            .try_normalize()
+        let ahead = unit_across(self.along, self.direction)
             .unwrap_or_else(|| self.direction.any_orthonormal_vector());
         let left = ahead.cross(self.direction) * -1.0;
         let left = if left.dot(self.along.cross(normal)) < 0.0 {
@@ -125,14 +126,21 @@ impl InsetSite {
     }
 }
 
+/// The part of a vector across a unit direction, as a unit vector. None if that is but rounding: then it would be any
+/// vector, even along the direction.
+pub(crate) fn unit_across(vector: DVec3, direction: DVec3) -> Option<DVec3> {
+    let across = vector - direction * vector.dot(direction);
+    let is_some = across.length_squared() > LEAST_ACROSS * LEAST_ACROSS * vector.length_squared();
+    across.try_normalize().filter(|_| is_some)
+}
+
 /// A direction turned up to [`MIN_STEEP`] from the surface's normal.
 pub(crate) fn not_too_steep(direction: DVec3, normal: DVec3) -> DVec3 {
     let up = direction.dot(normal);
     if up >= MIN_STEEP {
         return direction;
     }
-    let flat = (direction - normal * up).try_normalize();
-    let flat = flat.unwrap_or_else(|| normal.any_orthonormal_vector());
+    let flat = unit_across(direction, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
     normal * MIN_STEEP + flat * (1.0 - MIN_STEEP * MIN_STEEP).sqrt()
 }
 
@@ -161,6 +169,34 @@ mod tests {
             assert!((b - a).cross(d - a).dot(site.direction) > 0.0);
             // The first two corners are those behind.
             assert!((a.x + b.x) < (shape.corners[2].x + d.x));
+        }
+    }
+
+    /// Fault C6, `f1_fork_folds_back.swc`: a branch that goes on along its trunk has a ring across it.
+    #[test]
+    fn ring_along_its_trunk_has_its_radius() {
+        let ends = [-20.0, 20.0].map(|x| DVec3::new(x, 0.0, 0.0));
+        let trunk = [RoundCone::new(ends, [0.165; 2])];
+        for direction in [
+            DVec3::NEG_X * (1.0 - f64::EPSILON),
+            DVec3::new(1.0, 1e-16, 0.0),
+        ] {
+            let site = InsetSite {
+                exit: DVec3::new(-0.165, 0.0, 0.0),
+                direction,
+                radius: 0.165,
+                lift: 0.4,
+                along: DVec3::X,
+            };
+            let shape = site.shape(&trunk);
+            let [a, b, c, d] = shape.radials;
+            assert!(a.dot(c) < -0.99 && b.dot(d) < -0.99 && a.dot(b).abs() < 0.01);
+            assert!(
+                shape
+                    .radials
+                    .iter()
+                    .all(|side| side.dot(direction).abs() < 1e-6)
+            );
         }
     }
 

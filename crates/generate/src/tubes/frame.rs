@@ -4,6 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DQuat, DVec3};
 
+use crate::plan::unit_across;
+
 /// Carries a normal from one point of a path to the next by two reflections.
 ///
 /// `frame` is a unit vector across `tangent`; the result is one across `next_tangent`. Wang et al.,
@@ -26,9 +28,7 @@ pub(crate) fn transport(way: DVec3, frame: DVec3, tangent: DVec3, next_tangent: 
 
 /// The part of a vector across a unit direction, as a unit vector; any if there is none.
 pub(crate) fn across(vector: DVec3, direction: DVec3) -> DVec3 {
-    (vector - direction * vector.dot(direction))
-        .try_normalize()
-        .unwrap_or_else(|| direction.any_orthonormal_vector())
+    unit_across(vector, direction).unwrap_or_else(|| direction.any_orthonormal_vector())
 }
 
 /// Angle about `axis` from one vector across it to another, as quarter turns and what remains

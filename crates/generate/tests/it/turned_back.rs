@@ -2,10 +2,10 @@
 //! not negative, at any level.
 
 use crate::branches::add;
-use glam::{Quat, Vec3, vec3};
+use glam::{DVec3, Quat, Vec3, vec3};
 use neurotess_generate::{Crossings, GenerateOptions, Generated, generate};
 use neurotess_mesh::{SurfaceMesh, topology};
-use neurotess_morphology::{Attachment, Morphology, SectionId};
+use neurotess_morphology::{Attachment, Morphology, NeuriteKind, Node, SectionId};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_testing::{cases, is_full};
 use proptest::prelude::*;
@@ -210,4 +210,51 @@ fn a_fork_whose_children_leave_side_by_side_reaches_no_farther() {
     let cell = cell(points(Vec3::ZERO, 1.0, &root), Some(&branch));
     let generated = generate(&cell, &GenerateOptions::default()).expect("meshed");
     assert_eq!(fault(&cell, &generated), None);
+}
+
+/// Fault C6, `f1_fork_folds_back.swc`: a branch that goes on where its trunk turns back, from places beside that.
+#[neurotess_testing::test]
+fn a_branch_that_goes_on_where_its_trunk_turns_back_has_no_empty_faces() {
+    for [ahead, aside] in [
+        [0.16, 0.0],
+        [0.16, 0.02],
+        [0.3, 0.0],
+        [0.05, 0.0],
+        [0.16, -0.1],
+    ] {
+        let rows = [
+            ([6.0, 1.0, 0.0], None),
+            ([3.5, 0.3, 0.0], Some(0)),
+            ([1.2, 0.0, 0.0], Some(1)),
+            ([0.0, 0.0, 0.0], Some(2)),
+            ([ahead, aside, 0.0], Some(3)),
+            ([1.2, 0.0, 0.0], Some(4)),
+            ([1.7, -0.2, 0.0], Some(5)),
+            ([4.0, -2.0, 0.0], Some(6)),
+            ([0.33, 0.0, 0.0], Some(3)),
+            ([-1.2, 0.0, 0.0], Some(8)),
+            ([-4.0, 0.5, 0.0], Some(9)),
+        ];
+        let node = |(index, ([x, y, z], parent)): (usize, ([f64; 3], Option<u32>))| Node {
+            id: index as i64 + 1,
+            kind: NeuriteKind(3),
+            position: DVec3::new(x, y, z),
+            radius: 0.165,
+            parent,
+        };
+        let nodes: Vec<Node> = rows.into_iter().enumerate().map(node).collect();
+        let cell = Morphology::from_nodes("cell", Vec::new(), &nodes).expect("a cell");
+        let generated = generate(&cell.morphology, &GenerateOptions::default()).expect("meshed");
+        for level in [2, 4] {
+            let level = LodCriterion::Homogeneous(level);
+            let options = RefineOptions::default();
+            let surface = SurfaceMesh::collect(&Refinement::new(&generated.mesh, level, &options));
+            let at = |v: u32| surface.vertices[v as usize].position;
+            let areas = surface.faces.triangles.iter();
+            let least = areas
+                .map(|&[a, b, c]| (at(b) - at(a)).cross(at(c) - at(a)).length())
+                .fold(f32::INFINITY, f32::min);
+            assert!(least > 1e-9, "{ahead} {aside}: {least}");
+        }
+    }
 }
