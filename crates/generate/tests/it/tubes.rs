@@ -200,9 +200,66 @@ fn points_far_from_a_bend_stay() {
 
 #[neurotess_testing::test]
 fn jumps_of_the_radius_are_sound() {
-    let shapes = grid(&[0.7, 1.0, 1.4, 2.0], &[0.8, 1.5, 2.5]);
-    let faults = sum(shapes.map(|(step, thick)| jumps(step, thick)));
-    assert_eq!(faults, 0); // with rings as traced: 8
+    for (step, thick) in grid(&[0.7, 1.0, 1.4, 2.0], &[0.8, 1.5, 2.5]) {
+        let generated = made(&jumps(step, thick));
+        assert_eq!(crossings(&generated), 0, "{step} {thick}");
+    }
+}
+
+/// Pairs of faces that cross at level 4.
+fn crossings(generated: &Generated) -> usize {
+    let level = LodCriterion::Homogeneous(4);
+    let options = RefineOptions::default();
+    let surface = SurfaceMesh::collect(&Refinement::new(&generated.mesh, level, &options));
+    surface.self_intersections().len()
+}
+
+/// Fault C7, `v1_varicosities.swc`: swellings nearer to their neighbors than they are thick, in one point or several, on a
+/// straight path or a bent one.
+#[neurotess_testing::test]
+fn swellings_are_as_thick_as_they_were_traced() {
+    let one = |thin: f32, thick: f32| [thin, thin, thin, thin, thick, thin];
+    let round = [0.1, 0.1, 0.4, 0.9, 1.2, 0.9, 0.4, 0.1];
+    let cases: [(&[f32], f32, f32); 6] = [
+        (&one(0.1, 1.5), 0.5, 0.0),
+        (&one(0.2, 0.8), 0.25, 0.0),
+        (&one(0.3, 0.9), 0.3, 0.0),
+        (&one(0.1, 1.5), 0.5, 1.5),
+        (&round, 0.2, 0.0),
+        (&round, 0.2, 1.0),
+    ];
+    for (radii, step, sway) in cases {
+        let points: Vec<(Vec3, f32)> = (0..90)
+            .map(|i| {
+                let along = step * i as f32;
+                let place = vec3(along, sway * (0.3 * along).sin(), 0.0);
+                (place, radii[i % radii.len()])
+            })
+            .collect();
+        let traced: f32 = points
+            .windows(2)
+            .map(|w| {
+                let [(p, a), (q, b)] = [w[0], w[1]];
+                std::f32::consts::PI * p.distance(q) * (a * a + a * b + b * b) / 3.0
+            })
+            .sum();
+        let generated = made(&path(&points));
+        let share = volume(&generated) / traced;
+        assert!(
+            (share - 1.0).abs() < 0.035,
+            "{radii:?} {step} {sway}: {share}"
+        );
+        let most = radii.iter().copied().fold(0.0, f32::max);
+        let highest = generated.mesh.vertices.iter().map(|v| {
+            let center = generated.mesh.tracing[v.tracing as usize].center;
+            v.position.distance(center)
+        });
+        assert!(
+            highest.fold(0.0, f32::max) > 0.95 * most,
+            "{radii:?} {step} {sway}"
+        );
+        assert_eq!(crossings(&generated), 0, "{radii:?} {step} {sway}");
+    }
 }
 
 #[neurotess_testing::test]

@@ -8,7 +8,7 @@ mod pairs;
 mod seams;
 
 use glam::{Vec3, Vec3A};
-use neurotess_mesh::CoarseMesh;
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind};
 use neurotess_refine::{RefineOptions, patch_points};
 use rayon::prelude::*;
 
@@ -24,6 +24,11 @@ const CROWDED: usize = 16;
 /// Facets are seen from one side if they face it by more than this: cosine of 72°, to stay clear of outlines
 /// that cross. With 90° little more time is saved, and cells with many folds have a few more of them.
 const MIN_COS: f32 = 0.3;
+
+/// Cosine of the angle between a ring's normal and the ways to its neighbors up to which its path goes straight on.
+const STRAIGHT_ON: f32 = 0.8;
+/// A ring that is so many times as thick as both next ones is a swelling.
+const SWELLING: f32 = 1.5;
 
 /// Patches to be refined, and pairs to be searched, that are worth a thread.
 const MIN_PATCHES: usize = 64;
@@ -306,7 +311,43 @@ impl RefinedPatches {
 
     fn is_folded(&self, edge: &[u32; 2]) -> bool {
         let [a, b] = edge.map(|facet| &self.facets[facet as usize]);
-        a.folds(b)
+        a.folds(b) && !self.is_swelling(edge)
+    }
+
+    /// Whether facets meet at a ring whose tubes go on to opposite sides of its plane: of a swelling they
+    /// face nearly opposite ways and fold nothing over.
+    fn is_swelling(&self, edge: &[u32; 2]) -> bool {
+        let mesh = &self.part.mesh;
+        let [a, b] = edge.map(|facet| &mesh.patches[facet as usize / self.cut.facets()]);
+        let points = |patch: &Patch| {
+            let mut points = patch
+                .corners
+                .map(|v| mesh.vertices[v as usize].tracing)
+                .to_vec();
+            points.dedup();
+            points
+        };
+        let [a, b] = match [a, b].map(|patch| (patch.kind, points(patch))) {
+            [(PatchKind::Lateral, a), (PatchKind::Lateral, b)] => [a, b],
+            _ => return false,
+        };
+        let Some(&ring) = a.iter().find(|ring| b.contains(ring)) else {
+            return false;
+        };
+        let ring_point = &mesh.tracing[ring as usize];
+        // How far the tube goes on along the ring's normal, and how many times as thick as its other ring this one is.
+        let along = |points: Vec<u32>| {
+            let other = points.into_iter().find(|&point| point != ring)?;
+            let other = &mesh.tracing[other as usize];
+            let way = (other.center - ring_point.center).normalize_or_zero();
+            let thicker = ring_point.radius / other.radius;
+            Some([way.dot(ring_point.tangent), thicker])
+        };
+        let (Some([a, thicker]), Some([b, than])) = (along(a), along(b)) else {
+            return false;
+        };
+        let is_straight = a * b < 0.0 && a.abs().min(b.abs()) > STRAIGHT_ON;
+        is_straight && thicker.min(than) > SWELLING
     }
 }
 
@@ -322,7 +363,7 @@ fn facing(facets: &[Facet]) -> Vec3A {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use neurotess_mesh::{Patch, PatchKind, TracingPoint, Vertex};
+    use neurotess_mesh::{TracingPoint, Vertex};
 
     use super::*;
 
