@@ -26,8 +26,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
-pub use elements::{DeclaredReport, Elements};
 use contradictions::contradictions;
+pub use elements::{DeclaredReport, Elements};
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;

@@ -241,6 +241,7 @@ fn a_branch_that_goes_on_where_its_trunk_turns_back_has_no_empty_faces() {
             position: DVec3::new(x, y, z),
             radius: 0.165,
             parent,
+            section: None,
         };
         let nodes: Vec<Node> = rows.into_iter().enumerate().map(node).collect();
         let cell = Morphology::from_nodes("cell", Vec::new(), &nodes).expect("a cell");

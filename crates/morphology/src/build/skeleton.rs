@@ -50,6 +50,7 @@ mod tests {
             position: DVec3::new(f64::from(i), 0.0, 0.0),
             radius: radius(i),
             parent: i.checked_sub(1),
+            section: None,
         };
         let nodes: Vec<Node> = (0..60).map(node).collect();
         let built = Morphology::from_nodes("skeleton", Vec::new(), &nodes).expect("built");
