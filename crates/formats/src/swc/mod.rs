@@ -3,7 +3,7 @@
 //! The INCF's specification of SWC (version 1.0) asks for parents before children, one soma and
 //! types 0 to 7 or custom ones; files in the wild do not always keep to it, and this reader takes
 //! what has one meaning and tells what it took. Column 6 is a **radius**. What other readers make
-//! of the same files, and where this one differs, is in `docs/conventions.md`.
+//! of the same files, and where this one differs, is in `docs/other-programs.md`.
 //!
 //! ```text
 //! bytes ──rows──▶ records: nodes, parents by number, lines

@@ -1,7 +1,7 @@
 //! How a soma was traced, and the sphere that stands for it.
 //!
 //! The rules follow what readers do with files of NeuroMorpho.Org, Allen and Blue Brain; see
-//! `docs/conventions.md` for how they differ from MorphIO's and NeuroM's.
+//! `docs/other-programs.md` for how they differ from MorphIO's and NeuroM's.
 //!
 //! **The sphere of an outline.** An outline of area A and perimeter P (its ends joined) that goes once
 //! around something has the radius of equal area, √(A/π), about its centroid. One that is a needle, open or
