@@ -53,6 +53,7 @@
 #![forbid(unsafe_code)]
 
 mod blue_config;
+mod declared;
 mod edges;
 mod error;
 mod groups;
@@ -82,6 +83,7 @@ mod transform;
 mod warning;
 pub mod write;
 
+pub use declared::{DeclaredReport, Elements};
 pub use edges::{Edges, SynapseSide, Synapses};
 pub use error::{CircuitError, Fault};
 pub use groups::{Groups, natural};
@@ -93,8 +95,8 @@ pub use places::PlaceTable;
 pub use points::{PointTable, is_point_table};
 pub use population::{Attribute, NodeRef, Population};
 pub use report::{
-    DeclaredReport, Elements, RecordingFile, Report, ReportKind, ReportPopulation, SpikePopulation,
-    Spikes, TimeAxis, is_recording,
+    RecordingFile, Report, ReportKind, ReportPopulation, SpikePopulation, Spikes, TimeAxis,
+    is_recording,
 };
 pub use scene::color;
 pub use sections::Compartment;

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 
+use crate::declared::DeclaredReport;
 use crate::edges::Edges;
 use crate::error::CircuitError;
 use crate::groups::Groups;
 use crate::node_sets::NodeSets;
 use crate::population::{NodeRef, Population};
-use crate::report::DeclaredReport;
+
 use crate::template::{Template, TemplateId};
 use crate::warning::Warning;
 

@@ -63,11 +63,14 @@ mod soma;
 
 pub use build::{BuildError, BuildNote, Built, Node, Oddity};
 pub use diff::{Difference, Differing, MatchedBy, Retyped, SomaDifference};
-pub use file_sections::{FileSection, FileSectionId, FileSections, Piece};
+pub use file_sections::Piece;
 pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
 pub use membrane::{Membrane, MembranePlace};
-pub use model::{Attachment, Morphology, Point, Section, SectionId, Soma, SomaKind, SomaSample};
+pub use model::{
+    Attachment, FileSection, FileSectionId, FileSections, Morphology, Point, Section, SectionId,
+    Soma, SomaKind, SomaSample,
+};
 pub use sample_labels::SampleLabels;
 pub use section_numbers::{Program, SectionNumbers, SectionPlace};
 pub use soma::{Hidden, SomaMeshError, SomaShape, soma_area_volume};

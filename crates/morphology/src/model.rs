@@ -1,10 +1,11 @@
 //! Model 1: the arrays and their invariants.
 
+use std::num::NonZeroU32;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::{FileSections, NeuriteKind};
+use crate::NeuriteKind;
 
 /// A traced cell. Positions are `f32`, in µm relative to [`origin`](Self::origin).
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,6 +79,45 @@ impl Section {
             Attachment::Soma { .. } | Attachment::Free => None,
         }
     }
+}
+
+/// The sections of a file, and which points are from which.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FileSections {
+    /// In the order of the file. Those whose points were taken away by an edit stay, so that the others keep their numbers.
+    pub sections: Vec<FileSection>,
+    /// By point: index in `sections`. Empty where a morphology was not made from nodes: then sections of the file are
+    /// ours.
+    pub of_points: Vec<u32>,
+    /// Whether the format has sections; otherwise they are ours, in the order of their first samples in the file.
+    pub told: bool,
+}
+
+/// Index of a section in the file that a node is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FileSectionId(NonZeroU32);
+
+impl FileSectionId {
+    /// The section of this index; none of the last number that 32 bits hold.
+    pub fn new(index: u32) -> Option<Self> {
+        NonZeroU32::new(index.wrapping_add(1)).map(Self)
+    }
+
+    /// Index in [`FileSections::sections`].
+    pub fn index(self) -> usize {
+        self.0.get() as usize - 1
+    }
+}
+
+/// A section as the file has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileSection {
+    /// Its type.
+    pub kind: NeuriteKind,
+    /// Index of the file's section that it hangs on; none on a soma, or on nothing.
+    pub parent: Option<u32>,
+    /// Whether it has no point but a copy of the one that it branches from.
+    pub empty: bool,
 }
 
 /// What a section's first point hangs on.

@@ -6,8 +6,7 @@
 //! MorphIO 3.5.0 counts from 0, without the soma: rows of SWC depth first, sections of ASC and H5 as the file has them.
 //! **Practice.** [`FileSection`](crate::FileSection)s are sorted once; a place along one of them is found by bisection.
 
-use crate::file_sections::{FileSection, FileSections};
-use crate::{Morphology, NeuriteKind, SectionId, shape};
+use crate::{FileSection, FileSections, Morphology, NeuriteKind, SectionId, shape};
 
 /// Whose numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

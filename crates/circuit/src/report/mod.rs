@@ -27,7 +27,6 @@ use std::path::{Path, PathBuf};
 
 pub use axis::TimeAxis;
 use contradictions::contradictions;
-pub use elements::{DeclaredReport, Elements};
 pub use spikes::{SpikePopulation, Spikes};
 
 use crate::hdf5::Store;

@@ -10,7 +10,8 @@ use crate::Warning;
 use crate::losses::Losses;
 use crate::outlines::outlines;
 
-/// Writes a morphology as H5 of version 1.3, in `f64`, so that positions and radii come back exactly.
+/// Writes a morphology as H5 of version 1.3, in `f32` or, where that would round a coordinate, in `f64`, so that positions and
+/// radii come back exactly. Datasets are contiguous and without filters: MorphIO's wheels open no others.
 /// What the format cannot say is returned: numbers of samples, header, somata other than outlines.
 ///
 /// # Errors
@@ -58,9 +59,18 @@ pub fn write(morphology: &Morphology, mut writer: impl Write) -> io::Result<Vec<
     }
     let mut file = FileBuilder::new();
     let rows = points.len() as u64 / 4;
-    file.create_dataset("points")
-        .with_f64_data(&points)
-        .with_shape(&[rows, 4]);
+    // MorphIO warns of 64 bits, which only coordinates far away need to come back exactly.
+    let narrow: Vec<f32> = points.iter().map(|&number| number as f32).collect();
+    let exact = points
+        .iter()
+        .zip(&narrow)
+        .all(|(&wide, &narrow)| f64::from(narrow) == wide);
+    let dataset = file.create_dataset("points");
+    match exact {
+        true => dataset.with_f32_data(&narrow),
+        false => dataset.with_f64_data(&points),
+    }
+    .with_shape(&[rows, 4]);
     let rows = structure.len() as u64 / 3;
     file.create_dataset("structure")
         .with_i32_data(&structure)

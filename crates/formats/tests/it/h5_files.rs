@@ -165,3 +165,31 @@ fn filtered_chunks_of_hdf5_2_are_read() {
         }
     }
 }
+
+/// What MorphIO 3.5.0 takes without a warning, and its wheels open at all.
+#[neurotess_testing::test]
+fn written_tables_are_contiguous_and_of_32_bits() {
+    use hdf5_pure::{Datatype, File};
+    for (shift, bytes) in [(0.0, 4), (1e6 + 0.1, 8)] {
+        let text = format!(
+            "1 1 {shift} 0 0 5 -1\n2 3 {} 0 0 1 1\n3 3 {} 0 0 1 2\n",
+            shift + 9.0,
+            shift + 30.0
+        );
+        let options = ReadOptions::default();
+        let cell = neurotess_formats::swc::read_bytes(text.as_bytes(), "cell", &options);
+        let mut written = Vec::new();
+        h5::write(&cell.expect("a cell").morphology, &mut written).expect("memory takes it");
+        let file = File::from_bytes(written).expect("a file");
+        for name in ["points", "structure"] {
+            let dataset = file.dataset(name).expect("there");
+            assert_eq!(dataset.chunk_shape().expect("a shape"), None, "{name}");
+        }
+        let points = file.dataset("points").expect("there").datatype();
+        let size = match points.expect("a type") {
+            Datatype::FloatingPoint { size, .. } => size,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(size, bytes);
+    }
+}

@@ -13,6 +13,7 @@
 mod marks;
 mod notes;
 mod origin;
+mod sections;
 mod size;
 mod skeleton;
 mod somata;
@@ -24,13 +25,13 @@ use thiserror::Error;
 
 pub use notes::{BuildNote, Oddity};
 
-use crate::file_sections::Collector;
 use crate::{
     Attachment, FileSection, FileSectionId, Morphology, NeuriteKind, Point, Section, SectionId,
     Soma, SomaSample,
 };
 use notes::Notes;
 use origin::Frame;
+use sections::Collector;
 use size::Size;
 use somata::Somata;
 use tree::{Links, NONE};
