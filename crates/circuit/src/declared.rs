@@ -1,8 +1,11 @@
 //! What the ids of a report's elements mean, which its file does not say: the simulation's configuration does.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::compartment_sets::CompartmentSet;
 use crate::json::Json;
+use crate::warning::Warning;
 
 /// What the ids of a report's elements are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +36,8 @@ pub struct DeclaredReport {
     pub path: PathBuf,
     /// What its elements are.
     pub elements: Elements,
+    /// The set of compartments that it is of.
+    pub compartment_set: Option<String>,
     /// Its type as it is written, like `synapse`; of bmtk's the module.
     pub type_name: String,
     /// The configuration.
@@ -59,9 +64,29 @@ impl DeclaredReport {
         Self {
             path: path.to_path_buf(),
             elements,
+            compartment_set: text("compartment_set").filter(|_| type_name == "compartment_set"),
             type_name,
             config: report.file.into(),
             key: report.key.clone(),
         }
+    }
+
+    /// What to say of a set that no file has.
+    pub(crate) fn unknown_set(&self, sets: &BTreeMap<String, CompartmentSet>) -> Option<Warning> {
+        let name = self.compartment_set.as_ref()?;
+        if sets.contains_key(name) {
+            return None;
+        }
+        let there: Vec<&str> = sets.keys().map(String::as_str).collect();
+        let message = format!(
+            "no compartment set is called {name} (there are: {}): its compartments are placed evenly along sections",
+            there.join(", ")
+        );
+        Some(Warning::new(
+            &self.config,
+            &self.key,
+            "compartment_set_unknown",
+            message,
+        ))
     }
 }

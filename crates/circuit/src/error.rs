@@ -368,12 +368,10 @@ pub enum Fault {
     },
     /// A report of something else than compartments.
     #[error(
-        "{report} is of type '{type_name}': its values are those of {elements}s, which membranes do not show; choose a \
+        "is of type '{type_name}': its values are those of {elements}s, which membranes do not show; choose a \
          report of compartments, or write a table of it with 'neurotess report'"
     )]
     NotOfSections {
-        /// The file.
-        report: String,
         /// Its type as the configuration has it.
         type_name: String,
         /// What has values, in the singular.

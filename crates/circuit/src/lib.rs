@@ -53,6 +53,7 @@
 #![forbid(unsafe_code)]
 
 mod blue_config;
+mod compartment_sets;
 mod declared;
 mod edges;
 mod error;
@@ -83,6 +84,7 @@ mod transform;
 mod warning;
 pub mod write;
 
+pub use compartment_sets::{CompartmentSet, SetPlace};
 pub use declared::{DeclaredReport, Elements};
 pub use edges::{Edges, SynapseSide, Synapses};
 pub use error::{CircuitError, Fault};

@@ -93,6 +93,7 @@ pub(crate) fn circuit(
         node_sets: NodeSets::default(),
         edges: vec![],
         reports: BTreeMap::new(),
+        compartment_sets: BTreeMap::new(),
         declared_reports: Vec::new(),
         warnings,
         failures,

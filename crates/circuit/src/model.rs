@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 
+use crate::compartment_sets::CompartmentSet;
 use crate::declared::DeclaredReport;
 use crate::edges::Edges;
 use crate::error::CircuitError;
@@ -31,7 +32,9 @@ pub struct Circuit {
     pub edges: Vec<Edges>,
     /// Files of simulation reports by name; those that exist.
     pub reports: BTreeMap<String, std::path::PathBuf>,
-    /// What the configuration says of these.
+    /// Named places on neurons.
+    pub compartment_sets: BTreeMap<String, CompartmentSet>,
+    /// What the configuration says of reports.
     pub declared_reports: Vec<DeclaredReport>,
     /// What was odd.
     pub warnings: Vec<Warning>,

@@ -18,6 +18,7 @@ use std::path::Path;
 use regex_lite::Regex;
 use serde_json::Value;
 
+use crate::compartment_sets::CompartmentSet;
 use crate::error::{CircuitError, Fault};
 use crate::json::{Document, Json};
 use crate::population::{Attribute, NodeRef, Population};
@@ -40,6 +41,8 @@ enum Choice {
     Rules(Vec<(String, Rule)>),
     /// Nodes of any of these sets.
     Union(Vec<String>),
+    /// Nodes of a population by id: those of a compartment set.
+    Ids(String, Vec<u64>),
 }
 
 #[derive(Debug)]
@@ -93,6 +96,22 @@ impl NodeSets {
             self.sets.insert(name.into(), Set { file, choice });
         }
         Ok(())
+    }
+
+    /// Makes the nodes of compartment sets choices, too, where no node set has the name.
+    pub(crate) fn add_compartment_sets(
+        &mut self,
+        sets: &BTreeMap<String, CompartmentSet>,
+        file: &str,
+    ) {
+        for (name, set) in sets {
+            let choice = Choice::Ids(set.population.clone(), set.nodes());
+            let set = Set {
+                file: file.into(),
+                choice,
+            };
+            self.sets.entry(name.clone()).or_insert(set);
+        }
     }
 
     /// The nodes of a set, in the populations' order. `file`: of the circuit, for errors.
@@ -152,6 +171,17 @@ impl NodeSets {
                     }
                 }
                 way.pop();
+            }
+            Choice::Ids(name, ids) => {
+                let own = populations.iter().zip(0..).filter(|(p, _)| p.name == *name);
+                for (population, index) in own {
+                    let rows = population.ids.iter().zip(0..);
+                    let rows = rows.filter(|(id, _)| ids.binary_search(id).is_ok());
+                    found.extend(rows.map(|(_, row)| NodeRef {
+                        population: index,
+                        row,
+                    }));
+                }
             }
             Choice::Rules(rules) => {
                 for (attribute, _) in rules {

@@ -215,6 +215,7 @@ mod tests {
             templates: Vec::new(),
             node_sets: Default::default(),
             edges: Vec::new(),
+            compartment_sets: BTreeMap::new(),
             declared_reports: Vec::new(),
             reports: BTreeMap::new(),
             warnings: Vec::new(),

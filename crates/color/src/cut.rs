@@ -36,7 +36,7 @@ pub fn cuts(
 ) -> Result<HashMap<usize, Vec<Compartment>>, CircuitError> {
     let mut cuts = HashMap::new();
     let path = circuit.report_of_sections(report)?;
-    let RecordingFile::Report(report) = RecordingFile::open(path)? else {
+    let RecordingFile::Report(report) = circuit.open_recording(&path)? else {
         return Ok(cuts);
     };
     for population in &report.populations {

@@ -104,7 +104,7 @@ impl Recording {
         instances: &[(usize, Option<NodeRef>)],
     ) -> Result<Self, RecordingError> {
         let path = &circuit.report_of_sections(path)?;
-        let opened = RecordingFile::open(path)?;
+        let opened = circuit.open_recording(path)?;
         let warnings = opened.warnings().iter().map(ToString::to_string).collect();
         let mut recording = match opened {
             RecordingFile::Report(report) => Self::of_report(report, circuit, cells, instances)?,

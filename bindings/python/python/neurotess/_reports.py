@@ -38,7 +38,7 @@ class Report:
     ) -> None:
         if allow_large:
             _neurotess.allow_large()
-        self._report = _neurotess.Report(path)
+        self._report = _neurotess.Report(path) if circuit is None else circuit._circuit.recording(path)
         self._path = os.fspath(path)
         names = self._report.populations
         if population is None and len(names) > 1:

@@ -80,6 +80,12 @@ impl Circuit {
             .collect()
     }
 
+    /// A report or a file of spikes of the circuit: a file, or one by the circuit's name of it.
+    fn recording(&self, py: Python<'_>, path: PathBuf) -> PyResult<Report> {
+        let opened = detached(py, || self.circuit.open_recording(&path))?;
+        opened.map(Report::of).map_err(|e| unreadable(py, &e))
+    }
+
     /// What the ids of a report's elements are: `section`, `synapse` or `electrode`.
     fn elements(&self, path: PathBuf) -> &'static str {
         let declared = self.circuit.declared_report(&path);

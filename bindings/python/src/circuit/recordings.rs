@@ -21,15 +21,20 @@ pub(crate) struct Report {
     file: Arc<RecordingFile>,
 }
 
+impl Report {
+    pub(super) fn of(file: RecordingFile) -> Self {
+        Self {
+            file: Arc::new(file),
+        }
+    }
+}
+
 #[pymethods]
 impl Report {
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let opened = detached(py, || RecordingFile::open(path))?;
-        let file = opened.map_err(|e| unreadable(py, &e))?;
-        Ok(Self {
-            file: Arc::new(file),
-        })
+        opened.map(Self::of).map_err(|e| unreadable(py, &e))
     }
 
     #[getter]

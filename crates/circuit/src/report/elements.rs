@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::RecordingFile;
 use crate::declared::{DeclaredReport, Elements};
 use crate::{Circuit, CircuitError, Fault};
 
@@ -33,6 +34,26 @@ impl Circuit {
         })
     }
 
+    /// Opens a report or a file of spikes: a file, or one by the circuit's name of it. Compartments of a report that is of a
+    /// compartment set are where the set has them, if the file does not say.
+    ///
+    /// # Errors
+    /// As [`Self::report_file`]; what is wrong with the file.
+    pub fn open_recording(&self, wanted: &Path) -> Result<RecordingFile, CircuitError> {
+        let path = self.report_file(wanted)?;
+        let mut opened = RecordingFile::open(&path)?;
+        let declared = self.declared_report(&path);
+        let set =
+            declared.and_then(|report| self.compartment_sets.get(report.compartment_set.as_ref()?));
+        if let (Some(set), RecordingFile::Report(report)) = (set, &mut opened) {
+            let own = report.populations.iter_mut();
+            for population in own.filter(|population| population.name == set.population) {
+                population.set = Some(set.clone());
+            }
+        }
+        Ok(opened)
+    }
+
     /// The file of a report whose values are those of sections: for whoever shows them on membranes.
     ///
     /// # Errors
@@ -42,7 +63,6 @@ impl Circuit {
         match self.declared_report(&path) {
             Some(report) if report.elements != Elements::Sections => {
                 let fault = Fault::NotOfSections {
-                    report: path.display().to_string(),
                     type_name: report.type_name.clone(),
                     elements: report.elements.name(),
                 };

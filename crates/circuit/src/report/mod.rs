@@ -29,6 +29,7 @@ pub use axis::TimeAxis;
 use contradictions::contradictions;
 pub use spikes::{SpikePopulation, Spikes};
 
+use crate::compartment_sets::CompartmentSet;
 use crate::hdf5::Store;
 use crate::sections::{Compartment, compartments};
 use crate::{Circuit, CircuitError, Fault, NodeRef, Warning};
@@ -117,6 +118,8 @@ pub struct ReportPopulation {
     ids: String,
     compartments: String,
     positions: Option<String>,
+    /// The set of compartments that it is of, if the file gives no positions.
+    set: Option<CompartmentSet>,
     table: Table,
 }
 
@@ -209,6 +212,7 @@ impl ReportPopulation {
             ids,
             compartments,
             positions,
+            set: None,
             table,
             mapping: store,
         })
@@ -258,7 +262,18 @@ impl ReportPopulation {
             Some(path) => Some(self.mapping.reals_of(path, start, end - start)?),
             None => None,
         };
-        Ok(compartments(&sections, positions.as_deref()))
+        let set = self.set.as_ref().filter(|_| positions.is_none());
+        let of_node = set.map(|set| set.of_node(self.nodes[index]));
+        // Where the set has others than the file, the file says more.
+        let of_node = of_node.filter(|places| {
+            places
+                .iter()
+                .map(|p| p.section)
+                .eq(sections.iter().copied())
+        });
+        let offsets: Option<Vec<f64>> =
+            of_node.map(|places| places.iter().map(|place| place.offset).collect());
+        Ok(compartments(&sections, positions.or(offsets).as_deref()))
     }
 
     /// Values of compartments in a frame, in the order that they are asked for. Reads what holds them and

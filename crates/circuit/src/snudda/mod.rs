@@ -98,6 +98,7 @@ pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
         node_sets: NodeSets::default(),
         edges,
         reports: BTreeMap::new(),
+        compartment_sets: BTreeMap::new(),
         declared_reports: Vec::new(),
         warnings,
         failures,

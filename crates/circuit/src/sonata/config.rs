@@ -29,6 +29,8 @@ pub(crate) struct Config {
     pub(crate) edges: Vec<EdgeSource>,
     /// Files of node sets, each with the file and the key that name it.
     pub(crate) node_sets: Vec<(String, String, PathBuf)>,
+    /// Files of compartment sets, likewise.
+    pub(crate) compartment_sets: Vec<(String, String, PathBuf)>,
     /// Report files by name, the simulation's spikes among them, each with the file and the key that
     /// name it; they need not exist.
     pub(crate) reports: BTreeMap<String, (String, String, PathBuf)>,
@@ -173,6 +175,17 @@ impl Config {
     }
 
     fn take_node_sets(&mut self, root: &Json, manifest: &Manifest) -> Result<(), CircuitError> {
+        if let Some(file) = root.get("compartment_sets_file") {
+            let path = manifest.path(&file)?;
+            if !self
+                .compartment_sets
+                .iter()
+                .any(|(_, _, known)| *known == path)
+            {
+                self.compartment_sets
+                    .push((file.file.into(), file.key, path));
+            }
+        }
         if let Some(file) = root.get("node_sets_file") {
             let path = manifest.path(&file)?;
             if !self.node_sets.iter().any(|(_, _, known)| *known == path) {

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use config::{find, folder_of};
 
+use crate::compartment_sets;
 use crate::edges;
 use crate::hdf5::Store;
 use crate::template::{Template, TemplateId};
@@ -81,8 +82,27 @@ pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
             failures.extend(node_sets.add_file(path).err());
         }
     }
+    let mut compartment_sets = BTreeMap::new();
+    let mut told = Vec::new();
+    for (file, key, path) in &config.compartment_sets {
+        if is_there(path, file, key, "compartment_sets_missing") {
+            match compartment_sets::read(path) {
+                Ok(sets) => {
+                    let named = path.display().to_string();
+                    told.extend(compartment_sets::missing(&sets, &named, &populations));
+                    node_sets.add_compartment_sets(&sets, &named);
+                    compartment_sets.extend(sets);
+                }
+                Err(e) => failures.push(e),
+            }
+        }
+    }
+    for report in &config.declared_reports {
+        told.extend(report.unknown_set(&compartment_sets));
+    }
     let mut reports = config.reports;
     reports.retain(|_, (file, key, path)| is_there(path, file, key, "report_missing"));
+    warnings.extend(told);
     let reports = reports.into_iter().map(|(name, (_, _, path))| (name, path));
     Ok(Circuit {
         file: config.file,
@@ -92,6 +112,7 @@ pub(crate) fn open(path: &Path) -> Result<Circuit, CircuitError> {
         node_sets,
         edges,
         reports: reports.collect(),
+        compartment_sets,
         declared_reports: config.declared_reports,
         warnings,
         failures,

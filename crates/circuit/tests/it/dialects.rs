@@ -420,3 +420,144 @@ fn each_group_turns_by_its_own_columns() {
         }
     }
 }
+
+/// A circuit of nodes 0 and 1 with a simulation that has a compartment set, and a report of it: sections 1 and 1 of node 0,
+/// 1 of node 1.
+fn with_compartment_set(sets: &str) -> TempDir {
+    let place: Group = |group| {
+        for axis in ["x", "y", "z"] {
+            group.create_dataset(axis).with_f64_data(&[0.0; 2]);
+        }
+    };
+    let folder = folder(SWC, TYPES, &[100; 2], &[place]);
+    let mut file = FileBuilder::new();
+    let mut report = file.create_group("report");
+    let mut population = report.create_group("p");
+    population
+        .create_dataset("data")
+        .with_f32_data(&[1.0, 2.0, 3.0])
+        .with_shape(&[1, 3]);
+    let mut mapping = population.create_group("mapping");
+    mapping.create_dataset("node_ids").with_u64_data(&[0, 1]);
+    mapping
+        .create_dataset("index_pointers")
+        .with_u64_data(&[0, 2, 3]);
+    mapping
+        .create_dataset("element_ids")
+        .with_u64_data(&[1, 1, 1]);
+    mapping
+        .create_dataset("time")
+        .with_f64_data(&[0.0, 1.0, 1.0]);
+    population.add_group(mapping.finish());
+    report.add_group(population.finish());
+    file.add_group(report.finish());
+    let write =
+        |name: &str, content: &[u8]| fs::write(folder.path().join(name), content).expect("written");
+    write("v.h5", &file.finish().expect("bytes"));
+    write("sets.json", sets.as_bytes());
+    write(
+        "simulation_config.json",
+        br#"{"network": "circuit_config.json", "run": {}, "compartment_sets_file": "sets.json",
+            "output": {"output_dir": "."},
+            "reports": {"v": {"type": "compartment_set", "compartment_set": "some"}}}"#,
+    );
+    folder
+}
+
+const SOME: &str = r#"{"some": {"population": "p", "compartment_set": [[0, 1, 0.1], [0, 1, 0.9], [1, 1, 0.2]]},
+                       "one": {"population": "p", "compartment_set": [[1, 0, 0.5]]}}"#;
+
+#[neurotess_testing::test]
+fn compartment_sets_select_nodes_and_place_reports() {
+    use neurotess_circuit::{NodeRef, RecordingFile};
+    let folder = with_compartment_set(SOME);
+    let circuit = open(&folder);
+    let lost = |w: &&neurotess_circuit::Warning| w.code.starts_with("compartment");
+    assert_eq!(circuit.warnings.iter().find(lost), None);
+    assert_eq!(circuit.compartment_sets["some"].of_node(1)[0].offset, 0.2);
+    let of = |name: &str| {
+        let selection = Selection {
+            node_set: Some(name.into()),
+            ..Selection::default()
+        };
+        circuit.select(&selection)
+    };
+    let second = NodeRef {
+        population: 0,
+        row: 1,
+    };
+    assert_eq!(of("one").expect("a set"), [second]);
+    assert_eq!(of("some").expect("a set").len(), 2);
+    assert!(
+        of("none")
+            .expect_err("no set")
+            .to_string()
+            .contains("one, some")
+    );
+    let opened = circuit.open_recording(Path::new("v")).expect("a report");
+    let RecordingFile::Report(report) = opened else {
+        panic!("no report");
+    };
+    let along = |row| {
+        let all = report.populations[0]
+            .compartments(row)
+            .expect("compartments");
+        all.iter().map(|c| c.along).collect::<Vec<f32>>()
+    };
+    assert_eq!((along(0), along(1)), (vec![0.1, 0.9], vec![0.2]));
+}
+
+#[neurotess_testing::test]
+fn what_compartment_sets_name_in_vain_is_told() {
+    let codes = |sets: &str| {
+        let folder = with_compartment_set(sets);
+        let circuit = Circuit::open(folder.path()).expect("a circuit");
+        let failures = circuit.failures.iter().map(ToString::to_string);
+        let told = circuit
+            .warnings
+            .iter()
+            .filter(|w| w.code.starts_with("compartment"));
+        let told = told.map(|w| format!("{} {}", w.code, w.count));
+        failures.chain(told).collect::<Vec<_>>()
+    };
+    assert_eq!(codes(SOME), Vec::<String>::new());
+    let lost = SOME.replace("[[1, 0, 0.5]]", "[[1, 0, 0.5], [7, 0, 0.5], [9, 1, 0.5]]");
+    assert_eq!(codes(&lost), ["compartment_set_nodes 2"]);
+    let other = SOME.replacen(r#""population": "p""#, r#""population": "q""#, 1);
+    assert_eq!(codes(&other), ["compartment_set_population 1"]);
+    assert_eq!(codes("{}"), ["compartment_set_unknown 1"]);
+    for (from, to, says) in [
+        (
+            "[0, 1, 0.9]",
+            "[0, 1, 1.5]",
+            "'some.compartment_set[1][2]': is 1.5 instead of an offset from 0 to 1",
+        ),
+        (
+            "[0, 1, 0.9]",
+            "[0, 1, 0.1]",
+            "places ascend, and none is there twice",
+        ),
+        (
+            "[0, 1, 0.9]",
+            "[0, -1, 0.9]",
+            "'some.compartment_set[1][1]'",
+        ),
+        (
+            "[0, 1, 0.9]",
+            "[0, 1]",
+            "a list of node, section and offset",
+        ),
+    ] {
+        let found = codes(&SOME.replace(from, to));
+        assert!(found[0].contains(says), "{found:?}");
+    }
+    let folder = with_compartment_set(SOME);
+    fs::remove_file(folder.path().join("sets.json")).expect("removed");
+    let circuit = open(&folder);
+    assert!(
+        circuit
+            .warnings
+            .iter()
+            .any(|w| w.code == "compartment_sets_missing")
+    );
+}

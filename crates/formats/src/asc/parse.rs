@@ -420,7 +420,7 @@ impl<'a> Parser<'a, '_> {
         if !text.contains(&b',') {
             return Ok(());
         }
-        let parts = text.split(|b| b.is_ascii_whitespace());
+        let parts = text.split(u8::is_ascii_whitespace);
         let words = parts.filter(|part| part.iter().any(|b| *b != b','));
         let (mut count, mut by_comma, mut by_blank) = (0, false, false);
         for word in words {

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
         .map_err(|Failure(why)| anyhow::anyhow!(why))?;
     let selected: BTreeSet<NodeRef> = selected.into_iter().collect();
     let path = path_of(&circuit, args.report.as_deref())?;
-    let opened = RecordingFile::open(&path)?;
+    let opened = circuit.open_recording(&path)?;
     for warning in opened.warnings() {
         reporter.warning(&warning.to_string());
     }
