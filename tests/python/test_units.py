@@ -163,6 +163,14 @@ class TestPictures:
         with pytest.raises(ValueError, match="leave out turntable= and frames="):
             nt.film(cell, time=times, frames=3, **film)
 
+    def test_a_film_whose_legend_covers_the_cell_has_all_pictures(self) -> None:
+        fork = nt.read(b"1 1 0 0 0 5 -1\n2 3 6 0 0 1 1\n3 3 20 0 0 1 2\n4 3 40 20 0 1 3\n5 3 40 -20 0 1 3\n")
+        times = np.arange(3.0)
+        values = times[:, None] * np.ones(len(fork))
+        look: dict[str, Any] = {"title": "membrane", "size": (320, 240), "samples": 1}
+        film = nt.film(fork, values={"point": values}, times=times, time=(0, 3, 1), **look)
+        assert len(list(film)) == 3
+
     def test_the_unit_of_values_is_that_of_the_legend(self, cell: nt.Morphology) -> None:
         numbers = np.linspace(-0.07, 0.03, len(cell))
         look: dict[str, Any] = {"size": (320, 240), "samples": 1, "title": "membrane"}

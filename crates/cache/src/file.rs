@@ -287,6 +287,19 @@ mod tests {
         assert!(none.expect("no error").is_none());
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_not_followed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [cache, link] = ["a.ntcache", "b.ntcache"].map(|name| folder.path().join(name));
+        fs::write(&cache, written()).expect("written");
+        std::os::unix::fs::symlink(&cache, &link).expect("linked");
+        assert!(CacheFile::open(&cache).is_ok_and(|file| file.is_some()));
+        assert!(matches!(CacheFile::open(&link), Err(FileError::Link)));
+        fs::remove_file(&cache).expect("removed");
+        assert!(matches!(CacheFile::open(&link), Err(FileError::Link)));
+    }
+
     #[test]
     fn a_file_that_was_cut_off_at_any_length_is_refused() {
         let whole = written();

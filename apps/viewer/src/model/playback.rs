@@ -45,8 +45,8 @@ pub struct Facts {
     pub range: [f32; 2],
     /// Number of neurons that have no values, and of all.
     pub without: [usize; 2],
-    /// What there is to say of compartments whose section no cell has.
-    pub unknown: Option<String>,
+    /// What is odd in the file, though it can be read.
+    pub warnings: Vec<String>,
 }
 
 /// A recording that is played.
@@ -188,7 +188,7 @@ mod tests {
             spikes: false,
             range: [0.0, 1.0],
             without: [0, 1],
-            unknown: None,
+            warnings: Vec::new(),
         }));
         playback
     }

@@ -71,7 +71,10 @@ impl Stage {
                 spikes: recording.is_of_spikes(),
                 range: range.unwrap_or(*all),
                 without: [recording.without(), recording.places()],
-                unknown: recording.unknown_sections().map(ToString::to_string),
+                warnings: {
+                    let unknown = recording.unknown_sections().map(ToString::to_string);
+                    recording.warnings.iter().cloned().chain(unknown).collect()
+                },
             });
         if facts != state.playback.facts {
             state.playback.set_facts(facts);

@@ -138,9 +138,10 @@ fn what(facts: &Facts, ui: &mut Ui) {
         ui.colored_label(ui.visuals().warn_fg_color, text)
             .on_hover_text("The report does not have them; they are gray");
     }
-    if let Some(unknown) = &facts.unknown {
-        ui.colored_label(ui.visuals().warn_fg_color, "sections that no cell has")
-            .on_hover_text(unknown);
+    if !facts.warnings.is_empty() {
+        let text = "the report contradicts itself";
+        ui.colored_label(ui.visuals().warn_fg_color, text)
+            .on_hover_text(facts.warnings.join("\n"));
     }
 }
 
