@@ -27,6 +27,9 @@ use crate::work::{detached, released};
 use crate::{arrays, errors, json};
 pub(crate) use edits::{Edits, diff};
 
+/// An array of one dimension.
+type Column<T> = Py<PyArray1<T>>;
+
 /// A morphology and its arrays, which are made when they are first asked for.
 #[pyclass(frozen, module = "neurotess._neurotess")]
 pub(crate) struct Cell {
@@ -233,10 +236,7 @@ impl Cell {
     }
 
     /// Numbers in meshes of the points, and of the samples of each soma.
-    fn sample_labels<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Py<PyArray1<i64>>, Vec<Py<PyArray1<i64>>>)> {
+    fn sample_labels<'py>(&self, py: Python<'py>) -> PyResult<(Column<i64>, Vec<Column<i64>>)> {
         let cell = &self.morphology;
         let labels = cell.sample_labels();
         let points = (0..cell.points.len()).map(|point| i64::from(labels.of_point(point)));
@@ -265,7 +265,7 @@ impl Cell {
         py: Python<'py>,
         numbers: PyReadonlyArray1<'py, i64>,
         along: PyReadonlyArray1<'py, f32>,
-    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray1<f32>>)> {
+    ) -> PyResult<(Column<i64>, Column<f32>)> {
         let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
         let place = |(&number, &along): (&i64, &f32)| {
             let number = u64::try_from(number).ok();
@@ -287,7 +287,7 @@ impl Cell {
         py: Python<'py>,
         sections: PyReadonlyArray1<'py, i64>,
         along: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<(Py<PyArray1<i64>>, Py<PyArray1<f64>>)> {
+    ) -> PyResult<(Column<i64>, Column<f64>)> {
         let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
         let lengths = shape::section_lengths(&self.morphology);
         let number = |(&section, &along): (&i64, &f64)| {

@@ -58,17 +58,16 @@ fn hub(spacing: f64, root: usize, kind: i32) -> Vec<Node> {
     while let Some(parent) = std::mem::replace(&mut parents[here], above) {
         (above, here) = (Some(here), parent);
     }
-    let node = |(index, (&(position, radius, _), parent)): (
-        usize,
-        (&(DVec3, f64, Option<usize>), &Option<usize>),
-    )| Node {
-        id: index as i64 + 1,
-        kind: NeuriteKind(kind),
-        position,
-        radius,
-        parent: parent.map(|parent| parent as u32),
-        section: None,
-    };
+    type Sample = (DVec3, f64, Option<usize>);
+    let node =
+        |(index, (&(position, radius, _), parent)): (usize, (&Sample, &Option<usize>))| Node {
+            id: index as i64 + 1,
+            kind: NeuriteKind(kind),
+            position,
+            radius,
+            parent: parent.map(|parent| parent as u32),
+            section: None,
+        };
     places.iter().zip(&parents).enumerate().map(node).collect()
 }
 
