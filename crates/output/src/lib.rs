@@ -26,7 +26,7 @@ use std::path::Path;
 
 pub use error::OutputError;
 pub use existing::Existing;
-pub use output::Output;
+pub use output::{Output, temporary_folder};
 pub use own::{append_own, own_file};
 pub use part::{Ended, remove_unfinished};
 

@@ -126,6 +126,11 @@ impl Output {
     }
 }
 
+/// The folder in which what standard output gets at the end is until then.
+pub fn temporary_folder() -> std::path::PathBuf {
+    tempfile::env::temp_dir()
+}
+
 fn copy_to_standard(mut file: File) -> io::Result<()> {
     file.rewind()?;
     let mut out = io::stdout().lock();

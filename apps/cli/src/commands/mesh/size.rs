@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use neurotess::mesh::{Format, Surface};
+use neurotess::output::temporary_folder;
 use neurotess::recipe::memory;
 
+use crate::io::output::is_standard;
 use crate::report::{Failure, Reporter};
 
 /// Size (bytes) from which on it is reported beforehand.
@@ -33,15 +35,22 @@ pub(super) fn tell(
     if bytes < LARGE {
         return Ok(());
     }
-    let (out, folder) = (out.display(), folder_of(out));
+    // What standard output gets at the end is in a temporary file until then.
+    let temporary = temporary_folder();
+    let (folder, remedy) = match is_standard(out) {
+        true => (&*temporary, "set TMPDIR to a folder with more room"),
+        false => (folder_of(out), "another disk"),
+    };
+    let out = out.display();
     let faces = surface.triangle_count() + surface.quad_count();
     if let Ok(free) = fs4::available_space(folder)
         && free < bytes
     {
         return Err(Failure(format!(
-            "{out} would have about {}, but only {} are free: choose a lower --level or another disk",
+            "{out} would have about {}, but only {} are free in {}: choose a lower --level, or {remedy}",
             gigabytes(bytes),
-            gigabytes(free)
+            gigabytes(free),
+            folder.display()
         )));
     }
     reporter.warning(&format!(
