@@ -69,6 +69,10 @@ pub(crate) fn edge_level(
     level.clamp(1, HIGHEST_LEVEL)
 }
 
+/// Times as thick as the thinner end of a piece of a neurite that the thicker one counts: pieces that the thinner one likes
+/// would be slivers at the thicker one, hundreds of them.
+const TAPERED: f32 = 4.0;
+
 /// The level that a rule gives an edge, within its bounds; see [`EdgeRule`].
 fn by_rule(rule: EdgeRule, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -> u32 {
     let lengthwise = matches!(kind, EdgeKind::Along | EdgeKind::Loft);
@@ -85,7 +89,11 @@ fn by_rule(rule: EdgeRule, path: Path, kind: EdgeKind, a: &Corner, b: &Corner) -
         } => {
             // The greatest length counts even where it is below the least.
             let pieces = |length: f32, wanted: f32| length / wanted.max(least).min(most);
-            let piece = radii * a.radius.min(b.radius);
+            let (thin, thick) = (a.radius.min(b.radius), a.radius.max(b.radius));
+            let piece = match lengthwise {
+                true => radii * thin.max(thick / TAPERED),
+                false => radii * thin,
+            };
             let level = pieces(edge_length(kind, a, b), piece).round();
             let (level, highest) = match lengthwise {
                 // Hardly a piece longer than it may be, and no more of them than without that.

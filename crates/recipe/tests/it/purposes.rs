@@ -54,6 +54,35 @@ fn paths_that_turn_back_have_their_volume_however_they_are_meshed() {
     }
 }
 
+/// Fault C5: a few points that are a hundredth to a hundred-thousandth as thick as all others make no more than three times
+/// as many triangles, however thin they are. The time goes with them.
+#[neurotess_testing::test]
+fn points_that_are_far_thinner_than_others_make_few_triangles() {
+    let triangles = |is_thin: fn(usize) -> bool, thin: f64| {
+        let row = |i: usize| {
+            let radius = if is_thin(i) { thin } else { 0.5 };
+            let (x, y) = (2.0 * i as f64, 3.0 * (0.1 * i as f64).sin());
+            let parent = if i == 0 { -1 } else { i as i64 };
+            format!("{} 3 {x} {y} 0 {radius} {parent}\n", i + 1)
+        };
+        let text: String = (0..200).map(row).collect();
+        let made = mesh(&cell(&text), &MeshOptions::simulation()).expect("meshed");
+        let surface = made.surface();
+        assert!(made.report_of(&surface).closed);
+        SurfaceMesh::collect(surface.surface())
+            .faces
+            .triangles
+            .len()
+    };
+    let sound = triangles(|_| false, 0.5);
+    for thin in [5e-3, 5e-4, 5e-6] {
+        for is_thin in [|i| i % 20 == 7, |i| (80..92).contains(&i)] {
+            let all = triangles(is_thin, thin);
+            assert!(all < 3 * sound, "{thin}: {all} of {sound}");
+        }
+    }
+}
+
 #[neurotess_testing::test]
 fn a_coarse_mesh_that_is_there_gives_the_same() {
     let cell = Arc::new(cell(SMALL));
