@@ -13,9 +13,11 @@ const SPACING: f64 = 0.5;
 /// The first ring after a fork is at least this share of the fork's radius away.
 const FORK_SPACING: f64 = 1.0;
 
-/// Points of which one is so many times as thick as another within the least way are a swelling, and no noise of the radii:
-/// all stay where their rings have room. Radii that vary by 30 % to both sides reach 1.86.
+/// Points of which one is so many times as thick as others to both sides within the least way are a swelling, and no noise of
+/// the radii: all stay where their rings have room. Radii that vary by 30 % to both sides reach 1.86.
 const SWELLING: f64 = 1.9;
+/// Sum of half the turns (radians) at two such points up to which they stay: at sharper ones ridges fold over.
+const MOST_TURNED: f64 = 0.3;
 /// Points that are looked at for that, to either side.
 const MAX_BESIDE: usize = 12;
 /// A swelling of one point is drawn round, which holds more than its two cones. It is lowered for half of that, as far as
@@ -184,14 +186,13 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         let apart = |a: u32| skeleton.node(a).center.distance(node.center);
         let swells = |a: u32| {
             let reach = SPACING * skeleton.node(a).radius.max(node.radius);
-            let [least, most] = radii_beside(skeleton, children, i, reach);
-            most > SWELLING * least
+            is_at_swelling(skeleton, children, i, reach)
         };
         // Rings beside one another cross where their planes are at an angle.
         let have_room = |a: u32| {
             let angle = half_turn(skeleton, children, a) + half_turn(skeleton, children, i);
             let thick = skeleton.node(a).radius.max(node.radius);
-            apart(a) > thick * (BESIDE + angle.min(std::f64::consts::FRAC_PI_2).sin())
+            angle < MOST_TURNED && apart(a) > thick * (BESIDE + angle.sin())
         };
         let near = |a: u32| apart(a) < least(a, i) && !(swells(a) && have_room(a));
         if hub {
@@ -201,18 +202,8 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
                 last = above[last as usize];
             }
         } else if near(last) {
-            // A swelling stays as thick as it is.
-            if swells(last)
-                && node.radius > skeleton.node(last).radius
-                && ordinary(skeleton, children, last)
-            {
-                keep[last as usize] = false;
-                last = above[last as usize];
-                above[i as usize] = last;
-                continue;
-            }
             keep[i as usize] = false;
-            if ordinary(skeleton, children, last) && !swells(last) {
+            if ordinary(skeleton, children, last) {
                 gathered.push((last, i));
             }
         }
@@ -235,31 +226,35 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
     lower_peaks(skeleton);
 }
 
-/// The least and the greatest radius along the path through a node, up to a distance (µm) from it to either side.
-fn radii_beside(skeleton: &Skeleton, children: &Children, from: u32, reach: f64) -> [f64; 2] {
+/// Whether the path through a node swells and thins again, up to a distance (µm) from it to either side, or the least way of
+/// what is thicker there, and one point beyond.
+fn is_at_swelling(skeleton: &Skeleton, children: &Children, from: u32, reach: f64) -> bool {
     let center = skeleton.node(from).center;
-    let mut radii = [skeleton.node(from).radius; 2];
-    let mut add = |node: u32| {
-        let node = skeleton.node(node);
-        radii = [radii[0].min(node.radius), radii[1].max(node.radius)];
-        node.center.distance(center) <= reach
+    let beside = |next: &dyn Fn(u32) -> Option<u32>| {
+        let (mut here, mut radii, mut reach) = (from, Vec::with_capacity(MAX_BESIDE), reach);
+        while let Some(there) = next(here).filter(|_| radii.len() < MAX_BESIDE) {
+            radii.push(skeleton.node(there).radius);
+            reach = reach.max(SPACING * skeleton.node(there).radius);
+            if skeleton.node(there).center.distance(center) > reach {
+                break;
+            }
+            here = there;
+        }
+        radii
     };
-    let mut here = from;
-    for _ in 0..MAX_BESIDE {
-        here = skeleton.node(here).parent;
-        if here == NONE || !add(here) {
-            break;
-        }
-    }
-    here = from;
-    for _ in 0..MAX_BESIDE {
-        let &[next] = children.of(here) else { break };
-        here = next;
-        if !add(here) {
-            break;
-        }
-    }
-    radii
+    let mut radii = beside(&|node| Some(skeleton.node(node).parent).filter(|&p| p != NONE));
+    radii.reverse();
+    radii.push(skeleton.node(from).radius);
+    radii.extend(beside(&|node| match *children.of(node) {
+        [next] => Some(next),
+        _ => None,
+    }));
+    let peak = (0..radii.len()).max_by(|&a, &b| radii[a].total_cmp(&radii[b]));
+    peak.is_some_and(|peak| {
+        let least = |side: &[f64]| side.iter().copied().fold(f64::INFINITY, f64::min);
+        let valley = least(&radii[..peak]).max(least(&radii[peak..]));
+        radii[peak] > SWELLING * valley
+    })
 }
 
 /// Lowers points that are far thicker than both neighbors. From a thin point with radius a to a peak d above it and back,
