@@ -234,10 +234,11 @@ fn is_at_swelling(skeleton: &Skeleton, children: &Children, from: u32, reach: f6
         let (mut here, mut radii, mut reach) = (from, Vec::with_capacity(MAX_BESIDE), reach);
         while let Some(there) = next(here).filter(|_| radii.len() < MAX_BESIDE) {
             radii.push(skeleton.node(there).radius);
-            reach = reach.max(SPACING * skeleton.node(there).radius);
-            if skeleton.node(there).center.distance(center) > reach {
+            let way = skeleton.node(there).center.distance(center);
+            if way > reach {
                 break;
             }
+            reach = reach.max(way + SPACING * skeleton.node(there).radius);
             here = there;
         }
         radii
