@@ -157,7 +157,9 @@ fn of_branches_in_the_same_place_one_is_meshed() {
             let mut once = vec![first];
             run(&mut once, Some(0), lengths.into_iter().max().unwrap_or(0));
             let mut thrice = vec![first];
-            let _ = lengths.map(|length| run(&mut thrice, Some(0), length));
+            for length in lengths {
+                run(&mut thrice, Some(0), length);
+            }
             let [once, thrice] = [once, thrice].map(|nodes| meshed(&nodes));
             assert_eq!(count(&thrice, "branch_repeated"), 2, "{kind} {lengths:?}");
             let [once, thrice] = [once, thrice].map(|generated| volume(&surface(&generated)));

@@ -154,8 +154,21 @@ impl Cones {
             let crossed = self.0.iter();
             let crossed = crossed.filter_map(|solid| solid.crossed(center, **direction));
             let mut spans: Vec<[f64; 2]> = crossed.filter(|&[_, last]| last > 0.0).collect();
-            spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
             let last = spans.iter().map(|span| span[1]).fold(0.0, f64::max);
+            // Where faces gape at a bend nothing is hidden.
+            let at_faces = self.frusta().flat_map(|frustum| {
+                let [a, b] = frustum.radii;
+                [(frustum.from, a), (frustum.to, b)]
+            });
+            spans.extend(at_faces.filter_map(|(place, radius)| {
+                let ball = Solid::Ball {
+                    center: place,
+                    radius,
+                };
+                ball.crossed(center, **direction)
+            }));
+            spans.retain(|span| span[0] < last && span[1] > 0.0);
+            spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
             let mut reached = 0.0;
             spans.iter().any(|&[first, end]| {
                 let gap = first - reached > NO_GAP * last;
