@@ -92,6 +92,13 @@ impl Cones {
         })
     }
 
+    /// Whether frusta meet at an angle anywhere.
+    pub(super) fn has_joints(&self) -> bool {
+        self.0
+            .iter()
+            .any(|solid| matches!(solid, Solid::Ball { .. }))
+    }
+
     /// The middle if all is seen from there, else the place on the chain that sees most.
     fn center(&self) -> Option<DVec3> {
         let (mut sum, mut all) = (DVec3::ZERO, 0.0);

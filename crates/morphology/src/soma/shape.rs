@@ -48,7 +48,7 @@ enum Body {
     Outline(Box<Outline>),
     Stack(Stack),
     Cones(Cones),
-    /// Frusta that fork, made smooth: where faces meet at the fork are edges that nothing in a soma is like.
+    /// Frusta that fork or bend, made smooth: where faces meet there are edges that nothing in a soma is like.
     Forked(Cones, ByDirection),
     Triangles(Triangles),
 }
@@ -72,8 +72,12 @@ impl SomaShape {
             SomaKind::Cylinders => match short_chain(&soma.samples) {
                 Some(_) => None,
                 None => match Cones::new(&soma.samples, Ends::HalfDepth) {
-                    Some((center, cones)) if !soma.is_chain() => {
-                        return Self::forked(center, cones);
+                    Some((center, cones)) if cones.has_joints() => {
+                        let mut shape = Self::forked(center, cones);
+                        if soma.is_chain() {
+                            shape.volume = soma_area_volume(soma).1;
+                        }
+                        return shape;
                     }
                     body => body.map(|(center, cones)| (center, Body::Cones(cones))),
                 },
