@@ -156,7 +156,7 @@ def test_wrong_edits_are_value_errors(
 def test_no_edit_of_the_command_is_missing() -> None:
     helped = command("convert", "--help").stdout
     flags = {flag.replace("-", "_") for flag in re.findall(r"^\s+(?:-\w, )?--([a-z-]+)", helped, re.M)}
-    files = {"out", "force", "format", "strict", "dry_run", "threads", "help"}
+    files = {"out", "force", "format", "keep_ids", "strict", "dry_run", "threads", "help"}
     common = {"json", "quiet", "verbose", "no_progress", "color", "allow_large"}
     # In Python a circuit's cells are selected by `Circuit.select`.
     cells = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}

@@ -64,8 +64,8 @@ def test_numbers_that_repeat_are_those_of_the_section() -> None:
     mesh = nt.mesh(first, level=1)
     assert set(mesh.point_index.tolist()) == {-1, 0, 1}
     wide = nt.Morphology.from_table(np.array([(n if n < 3 else 2**40, *rest) for n, *rest in rows], dtype=float))
-    with pytest.warns(nt.NeurotessWarning, match="long_sample_numbers"):
-        mesh = nt.mesh(wide, level=1)
+    mesh = nt.mesh(wide, level=1)
+    assert any(told.code == "long_sample_numbers" for told in mesh.warnings)
     # Places instead of numbers that 32 bits do not hold.
     assert set(mesh.sample.tolist()) == {1, 2, 3}
     assert set(mesh.point_index.tolist()) == {-1, 0, 1}

@@ -127,7 +127,7 @@ impl Output {
 }
 
 /// The folder in which what standard output gets at the end is until then.
-pub fn temporary_folder() -> std::path::PathBuf {
+pub fn temporary_folder() -> PathBuf {
     tempfile::env::temp_dir()
 }
 

@@ -276,9 +276,12 @@ fn full_disks_and_missing_files_are_told_once_with_their_name() {
     work.file("a.swc", SMALL);
     work.run("synth circuit -o c --neurons 3 --morphologies 1 --points 60")
         .exits(0);
-    for command in ["info gone.h5", "html c -o c.html --report gone.h5"] {
+    for (command, reason) in [
+        ("info gone.h5", "No such file"),
+        ("html c -o c.html --report gone.h5", "no such report"),
+    ] {
         let missing = work.run(command).exits(1).stderr();
-        assert_eq!(missing.matches("No such file").count(), 1, "{missing}");
+        assert_eq!(missing.matches(reason).count(), 1, "{missing}");
         assert!(missing.contains("gone.h5"), "{missing}");
     }
     // A limit on the size of files stands for a full disk.
