@@ -2,6 +2,7 @@
 
 mod columns;
 mod edits;
+mod numbers;
 mod paths;
 mod state;
 mod table;
@@ -12,9 +13,7 @@ use std::sync::Arc;
 
 use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
-use neurotess::morphology::{
-    Measures, Morphology, Program, SectionId, SectionNumbers, SectionPlace, shape, soma_area_volume,
-};
+use neurotess::morphology::{Measures, Morphology, Program, shape, soma_area_volume};
 use neurotess::output::{Existing, Output};
 use neurotess::synth;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
@@ -26,9 +25,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::work::{detached, released};
 use crate::{arrays, errors, json};
 pub(crate) use edits::{Edits, diff};
-
-/// An array of one dimension.
-type Column<T> = Py<PyArray1<T>>;
+use numbers::Column;
 
 /// A morphology and its arrays, which are made when they are first asked for.
 #[pyclass(frozen, module = "neurotess._neurotess")]
@@ -235,18 +232,9 @@ impl Cell {
         Ok(self.samples.get_or_try_init(py, made)?.clone_ref(py))
     }
 
-    /// Numbers in meshes of the points, and of the samples of each soma.
-    fn sample_labels<'py>(&self, py: Python<'py>) -> PyResult<(Column<i64>, Vec<Column<i64>>)> {
-        let cell = &self.morphology;
-        let labels = cell.sample_labels();
-        let points = (0..cell.points.len()).map(|point| i64::from(labels.of_point(point)));
-        let of_soma = |soma: usize| {
-            let samples = 0..cell.somata[soma].samples.len();
-            let all = samples.map(|sample| i64::from(labels.of_soma(soma, sample)));
-            arrays::column(py, all.collect())
-        };
-        let somata: PyResult<_> = (0..cell.somata.len()).map(of_soma).collect();
-        Ok((arrays::column(py, points.collect())?, somata?))
+    /// See [`numbers::sample_labels`].
+    fn sample_labels(&self, py: Python<'_>) -> PyResult<(Column<i64>, Vec<Column<i64>>)> {
+        numbers::sample_labels(py, &self.morphology)
     }
 
     /// Places (µm) of spines that are not in the tree.
@@ -258,53 +246,29 @@ impl Cell {
         arrays::rows(py, places.collect())
     }
 
-    /// Of places along sections that NEURON numbers: the sections as meshes count them, 0 for the soma and −1 for none
-    /// that the cell has, and the places along these.
+    /// See [`numbers::neuron_places`].
     fn neuron_places<'py>(
         &self,
         py: Python<'py>,
         numbers: PyReadonlyArray1<'py, i64>,
         along: PyReadonlyArray1<'py, f32>,
     ) -> PyResult<(Column<i64>, Column<f32>)> {
-        let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
-        let place = |(&number, &along): (&i64, &f32)| {
-            let number = u64::try_from(number).ok();
-            match number.and_then(|number| of_cell.place(number, along)) {
-                None => (-1, along),
-                Some(SectionPlace::Soma) => (0, along),
-                Some(SectionPlace::Section(section, along)) => (1 + i64::from(section.0), along),
-            }
-        };
-        let pairs = numbers.as_slice()?.iter().zip(along.as_slice()?);
-        let (sections, along) = pairs.map(place).unzip();
-        Ok((arrays::column(py, sections)?, arrays::column(py, along)?))
+        numbers::neuron_places(py, &self.morphology, numbers.as_slice()?, along.as_slice()?)
     }
 
-    /// The other way round: of places along sections as meshes count them, 0 for the soma, NEURON's numbers and the places
-    /// along what has them; −1 for what is no section of the cell.
+    /// See [`numbers::neuron_numbers`].
     fn neuron_numbers<'py>(
         &self,
         py: Python<'py>,
         sections: PyReadonlyArray1<'py, i64>,
         along: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<(Column<i64>, Column<f64>)> {
-        let of_cell = SectionNumbers::of(&self.morphology, Program::Neuron);
-        let lengths = shape::section_lengths(&self.morphology);
-        let number = |(&section, &along): (&i64, &f64)| {
-            let index = usize::try_from(section - 1).ok();
-            match index.filter(|&index| index < lengths.len()) {
-                None if section == 0 => (0, along),
-                None => (-1, along),
-                Some(index) => {
-                    let (number, share) =
-                        of_cell.at(SectionId(index as u32), along * lengths[index]);
-                    (number as i64, f64::from(share))
-                }
-            }
-        };
-        let pairs = sections.as_slice()?.iter().zip(along.as_slice()?);
-        let (numbers, along) = pairs.map(number).unzip();
-        Ok((arrays::column(py, numbers)?, arrays::column(py, along)?))
+        numbers::neuron_numbers(
+            py,
+            &self.morphology,
+            sections.as_slice()?,
+            along.as_slice()?,
+        )
     }
 
     /// Arrays with a value for each section.
@@ -326,7 +290,7 @@ impl Cell {
             ("neuron_section", Program::Neuron),
             ("morphio_section", Program::Morphio),
         ] {
-            let numbers = section_numbers(cell, program);
+            let numbers = numbers::section_numbers(cell, program);
             sections.set_item(name, arrays::column(py, numbers)?)?;
         }
         let orders: Vec<i64> = wide(shape::branch_orders(cell));
@@ -467,12 +431,6 @@ impl Cell {
 #[pyfunction]
 pub(crate) fn allow_large() {
     formats::budget::allow_large();
-}
-
-/// The number that a program gives the file's section with which each section begins.
-fn section_numbers(cell: &Morphology, program: Program) -> Vec<i64> {
-    let numbers = SectionNumbers::of(cell, program).of_sections();
-    numbers.into_iter().map(|number| number as i64).collect()
 }
 
 /// What becomes of a file that is there.
