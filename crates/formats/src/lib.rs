@@ -216,6 +216,26 @@ pub fn read_bytes(
     }
 }
 
+/// A soma's surface: vertices (µm, the coordinates of the file), and triangles.
+pub type SomaMesh = (Vec<glam::DVec3>, Vec<[u32; 3]>);
+
+/// The mesh of the soma that an H5 file has beside a cell, as morph-spines writes it.
+///
+/// # Errors
+/// There is none, or it is broken; this build reads no H5.
+pub fn soma_mesh(path: impl AsRef<Path>) -> Result<SomaMesh, ReadError> {
+    #[cfg(feature = "h5")]
+    return h5::soma_mesh(path);
+    #[cfg(not(feature = "h5"))]
+    {
+        let error = std::io::Error::other(Format::H5.missing());
+        Err(ReadError::of_file(
+            &path.as_ref().display().to_string(),
+            Fault::Io(error),
+        ))
+    }
+}
+
 /// The file, and the morphology within it that a path names as in `merged.h5#cells/a`.
 pub fn member(path: &Path) -> (&Path, Option<&str>) {
     let whole = (path, None);

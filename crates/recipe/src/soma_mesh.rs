@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
+use neurotess_formats::Format;
 use neurotess_generate::GenerateOptions;
 use neurotess_mesh::SurfaceMesh;
 use neurotess_morphology::{Morphology, SomaShape};
@@ -33,8 +34,7 @@ fn shape(file: &Path, morphology: &Morphology) -> Result<SomaShape, String> {
             "the tracing has no soma that it could stand for: add a sample of type 1".into(),
         );
     }
-    let surface = neurotess_mesh::read(file).map_err(|e| e.to_string())?;
-    let (vertices, triangles) = triangles(&surface, morphology.origin);
+    let (vertices, triangles) = surface(file, morphology.origin)?;
     let shape = SomaShape::from_mesh(&vertices, &triangles).map_err(|e| e.to_string())?;
     let is_near = morphology.somata.iter().any(|soma| {
         let off = soma.center.as_dvec3().distance(shape.center());
@@ -49,6 +49,21 @@ fn shape(file: &Path, morphology: &Morphology) -> Result<SomaShape, String> {
         "it goes around {meshed} µm and no soma is there, the first is at {traced} µm: both must be in µm and in the same \
          coordinates"
     ))
+}
+
+/// The surface of a file: of a mesh, or of the soma that an H5 file has beside its cell. Vertices are about the origin of
+/// the morphology.
+fn surface(file: &Path, origin: DVec3) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+    let (path, _) = neurotess_formats::member(file);
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    if Format::of_extension(&extension) == Some(Format::H5) {
+        let (vertices, triangles) =
+            neurotess_formats::soma_mesh(file).map_err(|e| e.to_string())?;
+        let vertices = vertices.into_iter().map(|vertex| vertex - origin);
+        return Ok((vertices.collect(), triangles));
+    }
+    let surface = neurotess_mesh::read(file).map_err(|e| e.to_string())?;
+    Ok(triangles(&surface, origin))
 }
 
 /// Vertices about the origin of the morphology, and triangles.

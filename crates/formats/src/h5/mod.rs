@@ -9,6 +9,7 @@
 //! with a warning, but for those that tell of spines (`spines.rs`). A **container** has many morphologies of version 1, each in a group, of which one is
 //! named by its path: `merged.h5#cells/a`. HDF5 itself is read by a library in pure Rust.
 
+mod soma_mesh;
 mod spines;
 mod write;
 
@@ -22,6 +23,7 @@ use crate::text::stem;
 use crate::traced::Tracing;
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, regular};
+pub use soma_mesh::soma_mesh;
 pub use write::write;
 
 /// Stages of version 2, the best first.
@@ -123,6 +125,10 @@ fn interpret(
         member => Tables::of_member(store, member)?,
     };
     tell_what_is_left_out(store, &path, warnings);
+    if soma_mesh::is_there(store, name) {
+        let message = "the file has a mesh of the soma: mesh --soma-mesh file takes it";
+        warnings.add(1, "soma_mesh_in_file", message);
+    }
     let mut tracing = tables.tracing(warnings)?;
     tracing.spines = spines::spines(store, &path, &tables, warnings)?;
     tracing

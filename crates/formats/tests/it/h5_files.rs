@@ -193,3 +193,51 @@ fn written_tables_are_contiguous_and_of_32_bits() {
         assert_eq!(size, bytes);
     }
 }
+
+/// As morph-spines 1.1.0 writes it: `/soma/meshes/NAME`.
+#[neurotess_testing::test]
+fn the_mesh_of_a_soma_is_told_and_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("cell.h5");
+    let write = |triangles: &[i64]| {
+        let mut file = FileBuilder::new();
+        let points = [0.0, 0.0, 0.0, 9.0, 6.0, 0.0, 0.0, 2.0, 20.0, 0.0, 0.0, 2.0];
+        file.create_dataset("points")
+            .with_f64_data(&points)
+            .with_shape(&[3, 4]);
+        file.create_dataset("structure")
+            .with_i32_data(&[0, 1, -1, 1, 3, 0])
+            .with_shape(&[2, 3]);
+        let mut soma = file.create_group("soma");
+        let mut meshes = soma.create_group("meshes");
+        let mut own = meshes.create_group("cell");
+        let corners = [
+            5.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 5.0, -5.0, -5.0, -5.0,
+        ];
+        own.create_dataset("vertices")
+            .with_f64_data(&corners)
+            .with_shape(&[4, 3]);
+        own.create_dataset("triangles")
+            .with_i64_data(triangles)
+            .with_shape(&[triangles.len() as u64 / 3, 3]);
+        meshes.add_group(own.finish());
+        soma.add_group(meshes.finish());
+        file.add_group(soma.finish());
+        std::fs::write(&path, file.finish().expect("bytes")).expect("written");
+    };
+    write(&[0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0]);
+    let cell = read(&path, &ReadOptions::default()).expect("a cell");
+    assert!(
+        cell.warnings
+            .iter()
+            .any(|told| told.code == "soma_mesh_in_file")
+    );
+    let (vertices, triangles) = neurotess_formats::soma_mesh(&path).expect("a mesh");
+    assert_eq!((vertices.len(), triangles.len()), (4, 4));
+    assert_eq!((vertices[3].x, triangles[1]), (-5.0, [0, 3, 1]));
+    write(&[0, 1, 2, 0, 4, 1]);
+    let error = neurotess_formats::soma_mesh(&path)
+        .expect_err("no corner 4")
+        .to_string();
+    assert!(error.contains("soma/meshes/cell/triangles"), "{error}");
+}

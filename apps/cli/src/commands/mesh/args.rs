@@ -139,7 +139,8 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Soma")]
     pub(crate) soma_keep: Option<SomaKeepArg>,
     /// The soma's surface from a mesh (ply, obj, stl, off, …; µm, in the tracing's coordinates), as from a stack of
-    /// images or electron microscopy, instead of what was traced of it
+    /// images or electron microscopy, instead of what was traced of it; `file` for the one that an H5 file of morph-spines
+    /// has beside its cell
     #[arg(long, value_name = "FILE", help_heading = "Soma")]
     pub(crate) soma_mesh: Option<PathBuf>,
     /// Factor on the soma's size

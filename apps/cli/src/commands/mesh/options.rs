@@ -68,7 +68,17 @@ impl MeshOptions {
         let mut files = FileOptions::new(format(args, inputs)?);
         files.unit = args.unit.unit();
         (files.walls, files.materials, files.parts) = (args.walls, args.materials, args.parts);
-        let recipe = named(args).and_then(|named| named.options());
+        let recipe = named(args).and_then(|mut named| {
+            // The mesh that the tracing's own file has, unless there is a file of this name.
+            let of_input = named.soma_mesh.as_deref() == Some("file".as_ref());
+            if let (true, [input]) = (
+                of_input && !PathBuf::from("file").exists(),
+                &inputs.files[..],
+            ) {
+                named.soma_mesh = Some(input.path.clone());
+            }
+            named.options()
+        });
         let recipe = recipe.map_err(wrong)?;
         files.check(&recipe).map_err(wrong)?;
         check_outputs(args, &files, recipe.levels)?;
