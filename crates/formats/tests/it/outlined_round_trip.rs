@@ -17,6 +17,22 @@ const CELL: &[u8] = b"# made by hand
 ";
 
 #[neurotess_testing::test]
+fn a_cell_body_alone_is_a_soma() {
+    // Far longer than its line is wide, as a neurite is.
+    let text = b"((CellBody) (9 0 0 1) (0 9 0 1) (-9 0 0 1) (0 -9 0 1) (6 -6 0 1))";
+    let read = asc::read_bytes(text, "cell.asc", &ReadOptions::default()).expect("it is sound");
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    let cell = read.morphology;
+    assert_eq!((cell.somata.len(), cell.points.len()), (1, 0));
+    for (write, back) in FORMATS {
+        let mut bytes = Vec::new();
+        write(&cell, &mut bytes);
+        let again = back(&bytes);
+        assert_eq!((again.somata.len(), again.points.len()), (1, 0));
+    }
+}
+
+#[neurotess_testing::test]
 fn a_sphere_becomes_an_outline_of_its_size_and_all_losses_are_told() {
     let read = swc::read_bytes(CELL, "cell.swc", &ReadOptions::default()).expect("it is sound");
     let cell = read.morphology;

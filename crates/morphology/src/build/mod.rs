@@ -164,7 +164,8 @@ fn build(
 
     let mut somata = Somata::find(nodes, &parents, order.as_deref(), &mut notes);
     let typed = !nodes.iter().all(is_soma);
-    if !typed {
+    // Formats with outlines name the soma, so that no region's index is taken for it.
+    if !typed && matches!(somata_are, Traced::Samples) {
         within::neurites_of_type_1(&mut somata, nodes, &parents, &mut notes);
     }
     if tree::hang_up_by(&mut parents, &somata.tops) {
