@@ -12,7 +12,7 @@ pub(super) const MIN_STEEP: f64 = 0.5;
 const COLLAR: f64 = 0.7;
 /// A corner lies at most this far from the others' mean along the branch, in radii of the branch.
 const MAX_SHEAR: f64 = 2.2;
-/// Least part of a vector across a direction that is more than rounding.
+/// Least part of a vector across a direction that is more than rounding: the step of 32 bits, which tracings are kept in.
 const LEAST_ACROSS: f64 = 1e-7;
 /// Places along a branch where it is looked whether its trunk comes near it again.
 const TOP_STEPS: u32 = 8;

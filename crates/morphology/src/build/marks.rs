@@ -4,11 +4,8 @@
 use super::Node;
 use super::somata::Somata;
 use super::tree::NONE;
+use crate::soma::{FEWEST_MARKS, THIN};
 
-/// Least number of places with a radius that says nothing.
-const FEWEST: usize = 4;
-/// Their radius is below this share of the soma's.
-const THIN: f64 = 0.35;
 /// They are no farther from its middle than so many of its radii.
 const NEAR: f64 = 2.0;
 /// Somata that others may belong to.
@@ -42,7 +39,7 @@ impl Somata {
             let usual = usual(marks.iter().map(radius_of));
             marks.retain(|soma| radius_of(soma) <= 0.0 || Some(radius_of(soma)) == usual);
             let count: usize = marks.iter().map(|&soma| self.members[soma].len()).sum();
-            if count >= FEWEST || marks.iter().all(|soma| radius_of(soma) <= 0.0) {
+            if count >= FEWEST_MARKS || marks.iter().all(|soma| radius_of(soma) <= 0.0) {
                 marks.iter().for_each(|&soma| host_of[soma] = host);
             }
         }

@@ -7,10 +7,10 @@ use super::CONTOUR_BULGE;
 use crate::SomaSample;
 
 /// Least number of samples that share a radius which says nothing, and that go around anything.
-const FEWEST: usize = 4;
+pub(crate) const FEWEST_MARKS: usize = 4;
 /// A shared radius is none of their own where it is below this share of the samples' distance from the middle. By eye: what
 /// exporters write is 1 µm or nothing, and somata have 3 µm and more.
-const THIN: f64 = 0.35;
+pub(crate) const THIN: f64 = 0.35;
 /// Farthest from the middle in mean distances, and nearest: 1 ± this. A branch that was traced leads outwards.
 const UNEVEN: f64 = 0.6;
 /// Samples with the radius of the middle are on its ball where they are so near to it, in radii.
@@ -63,7 +63,7 @@ impl Marks {
         };
         let is_none = match first {
             0.0 => true,
-            _ if marks.len() < FEWEST => false,
+            _ if marks.len() < FEWEST_MARKS => false,
             _ if first == own => {
                 is_star() && all_within((1.0 - ON_BALL) * own, (1.0 + ON_BALL) * own)
             }
@@ -75,7 +75,7 @@ impl Marks {
         if !is_none {
             return None;
         }
-        if marks.len() < FEWEST || distance <= 0.0 {
+        if marks.len() < FEWEST_MARKS || distance <= 0.0 {
             return Some(Self::LeftOut(middle));
         }
         if let Some(order) = around(&offsets, distance) {

@@ -23,6 +23,7 @@ mod smooth;
 mod stack;
 mod triangles;
 
+pub(crate) use marks::{FEWEST_MARKS, THIN};
 pub use shape::SomaShape;
 pub use triangles::{Hidden, SomaMeshError};
 
