@@ -34,7 +34,16 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("neurotess-refine", &["neurotess-mesh"]),
     ("neurotess-union", &["neurotess-mesh"]),
-    ("neurotess-render", &["neurotess-mesh", "neurotess-refine"]),
+    // What a picture is; two crates draw it.
+    ("neurotess-picture", &["neurotess-mesh", "neurotess-refine"]),
+    (
+        "neurotess-raster",
+        &["neurotess-mesh", "neurotess-refine", "neurotess-picture"],
+    ),
+    (
+        "neurotess-render",
+        &["neurotess-mesh", "neurotess-refine", "neurotess-picture"],
+    ),
     (
         "neurotess-recipe",
         &[
@@ -46,7 +55,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-union",
             "neurotess-output",
             // Pictures, behind a feature.
-            "neurotess-render",
+            "neurotess-picture",
+            "neurotess-raster",
             "neurotess-color",
         ],
     ),
@@ -56,6 +66,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-morphology",
             "neurotess-mesh",
             "neurotess-refine",
+            "neurotess-picture",
+            // The shaders.
             "neurotess-render",
             "neurotess-color",
         ],
@@ -68,7 +80,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-mesh",
             "neurotess-generate",
             "neurotess-refine",
-            "neurotess-render",
+            "neurotess-picture",
+            "neurotess-raster",
             "neurotess-color",
             "neurotess-plot",
             "neurotess-web",
@@ -92,7 +105,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-morphology",
             "neurotess-mesh",
             "neurotess-circuit",
-            "neurotess-render",
+            "neurotess-picture",
         ],
     ),
     (
@@ -105,6 +118,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-synth",
             "neurotess-generate",
             "neurotess-refine",
+            "neurotess-picture",
+            "neurotess-raster",
             "neurotess-render",
             "neurotess-color",
             "neurotess-output",

@@ -9,9 +9,9 @@ use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface, write};
 use neurotess_morphology::edit::{self, Edit};
 use neurotess_morphology::{Measures, Morphology};
+use neurotess_picture::Placement;
 use neurotess_plot::{Measure, SHOLL_STEP, of_measure};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
-use neurotess_render::Placement;
 use neurotess_web::{
     CellsText, MAX_KEYS, PageCell, PageMarkers, PageOptions, WebError, shared_cells,
 };

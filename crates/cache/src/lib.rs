@@ -47,7 +47,7 @@ use std::sync::{Mutex, PoisonError};
 use neurotess_generate::{GenerateOptions, Generated};
 use neurotess_mesh::{ByteReader, ByteWriter, BytesError};
 use neurotess_morphology::Morphology;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 use neurotess_render::Proxy;
 use thiserror::Error;
 
@@ -65,7 +65,7 @@ pub const MIN_POINTS: usize = 100_000;
 
 /// How many proxies are computed in the time of a mesh, about: in a profile of opening 1,000 cells of 5,000 points,
 /// meshes took 75 % of the time, proxies 8 %.
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 const PROXIES_OF_MESH: usize = 10;
 
 /// A circuit's cache while it is opened.
@@ -211,7 +211,7 @@ impl Cache {
     }
 
     /// What exploration draws of a mesh with this key, all color keys 0.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     pub fn proxy(&self, key: &Key, mesh: &neurotess_mesh::CoarseMesh) -> Proxy {
         let key = key.derived("proxy");
         let there = self.get(&key, |bytes| Proxy::read_bytes(bytes, mesh.tracing.len()));

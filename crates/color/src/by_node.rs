@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use neurotess_circuit::{Attribute, Circuit, NodeRef, color, natural};
-use neurotess_render::color::{InstanceValues, Rgb};
-use neurotess_render::overlay::Legend;
+use neurotess_picture::color::{InstanceValues, Rgb};
+use neurotess_picture::overlay::Legend;
 use thiserror::Error;
 
 use crate::categorical::{Distinct, categorical, first_values, painted};
@@ -198,7 +198,7 @@ mod tests {
     use crate::own_colors::OwnColors;
     use crate::scheme::NOTHING;
     use neurotess_circuit::Population;
-    use neurotess_render::color::Palette;
+    use neurotess_picture::color::Palette;
 
     /// Thirty nodes with these attributes.
     fn circuit(attributes: Vec<(&str, Attribute)>) -> Circuit {

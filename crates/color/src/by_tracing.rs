@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use neurotess_mesh::{Role, TracingPoint};
 use neurotess_morphology::{Morphology, NeuriteKind, shape};
-use neurotess_render::color::{ColorTable, category, fraction};
-use neurotess_render::overlay::Legend;
+use neurotess_picture::color::{ColorTable, category, fraction};
+use neurotess_picture::overlay::Legend;
 
 use crate::own_colors::ColoredThing;
 use crate::path_distance::path_distances;
@@ -243,7 +243,7 @@ fn radii(cell: &Cell<'_>) -> Vec<Option<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use neurotess_render::color::Palette;
+    use neurotess_picture::color::Palette;
 
     use super::*;
     use crate::own_colors::{ColorTarget, OwnColors};

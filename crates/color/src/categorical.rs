@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use neurotess_render::color::{ColorTable, InstanceValues, Rgb};
-use neurotess_render::overlay::Legend;
+use neurotess_picture::color::{ColorTable, InstanceValues, Rgb};
+use neurotess_picture::overlay::Legend;
 
 use crate::own_colors::{ColorTarget, ColoredThing};
 use crate::scheme::{Cell, ColorScheme, Coloring, NOTHING};

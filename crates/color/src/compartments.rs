@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use neurotess_circuit::Compartment;
 use neurotess_mesh::Role;
 use neurotess_morphology::{Program, SectionId, SectionNumbers, SectionPlace, shape};
-use neurotess_render::color::category;
+use neurotess_picture::color::category;
 
 use crate::path_distance::path_distances;
 use crate::scheme::Cell;

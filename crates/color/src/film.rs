@@ -1,8 +1,6 @@
 //! Films of a recording from a fixed view: one static picture, colored anew for each time.
 
-use neurotess_render::color::ColorTable;
-use neurotess_render::{DeviceError, Gpu, Image, KeyColors, StaticPicture};
-use thiserror::Error;
+use neurotess_picture::VisibleKey;
 
 use crate::recording::{Recording, RecordingError};
 use crate::visible::{VisibleValues, fractions};
@@ -10,23 +8,11 @@ use crate::visible::{VisibleValues, fractions};
 /// Most pixels of a picture that is held as a whole, with its weights: larger ones are drawn anew.
 const MAX_PIXELS: u64 = 1 << 24;
 
-/// A static picture, and where a recording has the values of what shows in it.
+/// Where a recording has the values of what shows in a static picture, and what it makes of them.
 pub struct Film {
-    picture: StaticPicture,
     visible: VisibleValues,
     range: [f32; 2],
     decay: f64,
-}
-
-/// Why a picture of a film was not made.
-#[derive(Debug, Error)]
-pub enum FilmError {
-    /// The device reports an error.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
-    /// The recording cannot be read.
-    #[error(transparent)]
-    Recording(#[from] RecordingError),
 }
 
 impl Film {
@@ -35,42 +21,24 @@ impl Film {
         u64::from(width) * u64::from(height) <= MAX_PIXELS
     }
 
-    /// A film of a recording. `range`: values at both ends of the scale; `decay`: as in
-    /// [`Recording::at`].
-    pub fn new(picture: StaticPicture, recording: &Recording, range: [f32; 2], decay: f64) -> Self {
+    /// A film of a recording. `keys`: what shows in the picture; `range`: values at both ends of the scale; `decay`: as
+    /// in [`Recording::at`].
+    pub fn new(keys: &[VisibleKey], recording: &Recording, range: [f32; 2], decay: f64) -> Self {
         Self {
-            visible: recording.visible(picture.keys()),
-            picture,
+            visible: recording.visible(keys),
             range,
             decay,
         }
     }
 
-    /// The picture at a time (ms). `recording`: that of the film; `table`: scale and categories;
-    /// `states`: as in [`KeyColors`].
+    /// What the picture is colored by at a time (ms): a fraction of the range for each of its keys, as
+    /// [`KeyColors::values`](neurotess_picture::KeyColors::values) has them. `recording`: that of the film.
     ///
     /// # Errors
-    /// The recording has no values at that time, or cannot be read; or the device reports an error.
-    pub fn picture(
-        &self,
-        gpu: &Gpu,
-        recording: &Recording,
-        time: f64,
-        (table, states): (&ColorTable, &[u32]),
-    ) -> Result<Image, FilmError> {
+    /// The recording has no values at that time, or cannot be read.
+    pub fn values(&self, recording: &Recording, time: f64) -> Result<Vec<f32>, RecordingError> {
         let values = recording.visible_at(time, self.decay, &self.visible)?;
-        let colors = KeyColors {
-            table,
-            states,
-            values: Some(&fractions(&values, self.range)),
-        };
-        self.picture.recolor(gpu, &colors)?;
-        Ok(self.picture.image(gpu)?)
-    }
-
-    /// The picture that is colored.
-    pub fn static_picture(&self) -> &StaticPicture {
-        &self.picture
+        Ok(fractions(&values, self.range))
     }
 
     /// Number of compartments that are read for a picture; 0 for spikes.

@@ -47,7 +47,7 @@ pub use by_tracing::{ColorBy, coloring};
 #[cfg(feature = "circuit")]
 pub use cut::{cuts, with_middles};
 #[cfg(feature = "circuit")]
-pub use film::{Film, FilmError};
+pub use film::Film;
 #[cfg(feature = "circuit")]
 pub use markers::{
     EdgeSynapses, MarkerError, MarkerRow, MarkerSet, ShownCell, ShownCells, SynapseFacts,

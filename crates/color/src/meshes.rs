@@ -1,7 +1,7 @@
 //! Colors of meshes beside the cells.
 
-use neurotess_render::color::{Rgb, category, fraction};
-use neurotess_render::overlay::Legend;
+use neurotess_picture::color::{Rgb, category, fraction};
+use neurotess_picture::overlay::Legend;
 
 use crate::scheme::{ColorScheme, Coloring, NOTHING};
 
@@ -101,7 +101,7 @@ impl Coloring {
 
 #[cfg(test)]
 mod tests {
-    use neurotess_render::color::{ColorTable, Palette};
+    use neurotess_picture::color::{ColorTable, Palette};
 
     use super::*;
 

@@ -5,7 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use neurotess_morphology::NeuriteKind;
-use neurotess_render::color::Rgb;
+use neurotess_picture::color::Rgb;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A thing that has a color.

@@ -2,7 +2,7 @@
 
 use itertools::Itertools;
 use neurotess_circuit::TimeAxis;
-use neurotess_render::color::category;
+use neurotess_picture::color::category;
 
 use crate::own_values::on_mesh;
 use crate::report_frame::ReportFrame;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use itertools::Itertools;
 use neurotess_mesh::{Role, TracingPoint};
-use neurotess_render::color::{category, fraction};
+use neurotess_picture::color::{category, fraction};
 
 use crate::scheme::{Cell, ColorScheme, Coloring};
 
@@ -83,7 +83,7 @@ pub(crate) fn on_mesh<T: Copy>(cell: &Cell<'_>, points: &[T], soma: T, none: T) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use neurotess_render::color::{CATEGORY_BIT, Palette};
+    use neurotess_picture::color::{CATEGORY_BIT, Palette};
 
     use crate::own_colors::OwnColors;
 

@@ -17,7 +17,7 @@
 
 use std::fmt::Write as _;
 
-use neurotess_render::color::{Palette, Rgb};
+use neurotess_picture::color::{Palette, Rgb};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use thiserror::Error;

@@ -19,7 +19,7 @@ use neurotess_circuit::{
     Circuit, CircuitError, Compartment, NodeRef, RecordingFile, Report, ReportPopulation,
     SpikePopulation, Spikes, TimeAxis,
 };
-use neurotess_render::color::category;
+use neurotess_picture::color::category;
 use thiserror::Error;
 
 use crate::categorical::first_values;

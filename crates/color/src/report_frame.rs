@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use neurotess_circuit::{CircuitError, ReportPopulation};
-use neurotess_render::color::InstanceValues;
+use neurotess_picture::color::InstanceValues;
 
 /// Values of one time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,8 +2,8 @@
 
 use neurotess_mesh::CoarseMesh;
 use neurotess_morphology::{Morphology, NeuriteKind};
-use neurotess_render::color::{CATEGORY_BIT, ColorTable, Palette, Rgb};
-use neurotess_render::overlay::Legend;
+use neurotess_picture::color::{CATEGORY_BIT, ColorTable, Palette, Rgb};
+use neurotess_picture::overlay::Legend;
 
 use crate::own_colors::{ColorTarget, ColoredThing, OwnColors};
 

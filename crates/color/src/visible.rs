@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use itertools::Itertools;
-use neurotess_render::VisibleKey;
-use neurotess_render::color::CATEGORY_BIT;
+use neurotess_picture::color::CATEGORY_BIT;
+use neurotess_picture::recolor::VisibleKey;
 
 use crate::recording::{Recording, RecordingError, Source};
 
@@ -40,7 +40,7 @@ impl VisibleValues {
     }
 }
 
-/// Values as fractions of a range, as [`KeyColors::values`](neurotess_render::KeyColors::values) has
+/// Values as fractions of a range, as [`KeyColors::values`](neurotess_picture::recolor::KeyColors::values) has
 /// them.
 pub fn fractions(values: &[f32], [low, high]: [f32; 2]) -> Vec<f32> {
     let fraction = |value: &f32| (value - low) / (high - low);

@@ -9,7 +9,7 @@
 
 use std::fmt;
 
-use neurotess_render::color::{Rgb, linear};
+use neurotess_picture::color::{Rgb, linear};
 
 /// Distance (OKLab, in which black and white are 1 apart) from which two colors can be told apart on thin
 /// neurites. A difference is just noticeable at 0.02, side by side and over an area. The closest pair of the
@@ -178,7 +178,7 @@ impl fmt::Display for ClosestColors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use neurotess_render::color::Palette;
+    use neurotess_picture::color::Palette;
 
     fn named(colors: &[Rgb]) -> Vec<(Rgb, String)> {
         let colors = colors.iter().copied().enumerate();

@@ -66,9 +66,10 @@
 //! | [`synth`] | synthetic neurons and circuits | `synth` |
 //! | [`generate`] | from a morphology to a coarse mesh | |
 //! | [`refine`] | from a coarse mesh to a surface | |
-//! | [`render`] | from coarse meshes to pictures | `render` |
+//! | [`picture`] | what a picture is: cameras, colors, looks, legends | `render` |
+//! | [`render`] | pictures by graphics hardware | `gpu` |
 //! | [`coloring`] | what the colors of pictures tell | `render` |
-//! | [`web`] | cells as one HTML page | `render` |
+//! | [`web`] | cells as one HTML page | `gpu` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
 //! | [`recipe`] | from a tracing to the mesh that a purpose needs, its files and its picture: all stages by one value of options | pictures: `render` |
@@ -89,21 +90,23 @@ pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
 pub use neurotess_output as output;
+#[cfg(feature = "render")]
+pub use neurotess_picture as picture;
 pub use neurotess_plot as plot;
 pub use neurotess_recipe as recipe;
 #[cfg(feature = "render")]
 pub use neurotess_recipe::draw;
 pub use neurotess_recipe::{mesh, read};
 pub use neurotess_refine as refine;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 pub use neurotess_render as render;
 #[cfg(feature = "synth")]
 pub use neurotess_synth as synth;
 pub use neurotess_union as union;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 pub use neurotess_web as web;
 
 /// The code of docs/library.md.
-#[cfg(all(doctest, feature = "render"))]
+#[cfg(all(doctest, feature = "gpu"))]
 #[doc = include_str!("../../../docs/library.md")]
 struct LibraryPage;

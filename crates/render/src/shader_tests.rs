@@ -6,8 +6,7 @@ use neurotess_refine::{assert_layout, testing};
 
 use crate::gpu::shader;
 use crate::output::ids::ids_shader;
-use crate::output::static_picture::collect::{Weighed, collect_shader};
-use crate::output::static_picture::matrix::Weight;
+use crate::output::static_picture::collect::collect_shader;
 use crate::output::static_picture::recolor::{Recolor, recolor_shader};
 use crate::scene::templates::Base;
 use crate::shading::finish::{Finish, Last, finish_shader};
@@ -28,6 +27,8 @@ use crate::sources::budgeted::passes::{Arguments, Measured, VisibleCluster, sele
 use crate::sources::markers::{self, MarkerFrame, StoredMarker};
 use crate::sources::meshes::{self, MeshFrame, MeshVertex};
 use crate::sources::prerefined::{self, Placement, StoredVertex};
+use neurotess_picture::recolor::Weighed;
+use neurotess_picture::recolor::Weight;
 
 #[test]
 fn adaptive_shaders_are_valid_in_every_language_and_have_our_structs() {

@@ -3,9 +3,9 @@
 use neurotess_color::{Cell, path_distances};
 use neurotess_mesh::Role;
 use neurotess_morphology::shape;
+use neurotess_picture::Placement;
+use neurotess_picture::color::category;
 use neurotess_refine::{MeshPart, SHAPED_U32S, pack};
-use neurotess_render::Placement;
-use neurotess_render::color::category;
 use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays, share};

@@ -5,8 +5,8 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use neurotess_color::{ColorBy, OwnColors};
-use neurotess_render::color::{ColorMap, Palette, Rgb};
-use neurotess_render::usual_least_width;
+use neurotess_picture::color::{ColorMap, Palette, Rgb};
+use neurotess_picture::usual_least_width;
 use serde::Serialize;
 
 use crate::arrays::Arrays;

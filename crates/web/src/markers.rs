@@ -1,6 +1,6 @@
 //! Markers in a page: synapses, or points of a table.
 
-use neurotess_render::color::Rgb;
+use neurotess_picture::color::Rgb;
 use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays};

@@ -1,7 +1,7 @@
 //! Values over time, or of one time, in a page.
 
 use neurotess_color::{Cell, OwnValues};
-use neurotess_render::color::{CATEGORY_BIT, category};
+use neurotess_picture::color::{CATEGORY_BIT, category};
 use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays};

@@ -2,7 +2,7 @@
 
 use neurotess_color::{ColorBy, ColorTarget, Coloring, OwnColors};
 use neurotess_morphology::NeuriteKind;
-use neurotess_render::color::{CATEGORY_BIT, ColorMap, Palette, Rgb};
+use neurotess_picture::color::{CATEGORY_BIT, ColorMap, Palette, Rgb};
 use serde::Serialize;
 
 use crate::arrays::{ArrayRef, Arrays};

@@ -1,7 +1,7 @@
 //! Films that are saved from a fixed view.
 
 use neurotess::coloring::Film;
-use neurotess::render::{Gpu, Image, StaticPicture};
+use neurotess::render::{Gpu, Image, KeyColors, StaticPicture};
 
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
@@ -16,16 +16,17 @@ pub(super) fn is_static(scene: &StillScene, frames: &[FilmFrame], options: &Pict
         && Film::holds(options.size)
 }
 
-/// The film of the scene's recording; none without one.
-pub(super) fn film(scene: &StillScene, picture: StaticPicture) -> Option<Film> {
+/// A picture with the film of the scene's recording; none without one.
+pub(super) fn film(scene: &StillScene, picture: StaticPicture) -> Option<(Film, StaticPicture)> {
     let (recording, _) = scene.content.recording.as_ref()?;
     let decay = scene.look.decay;
-    Some(Film::new(picture, recording, scene.range(), decay))
+    let film = Film::new(picture.keys(), recording, scene.range(), decay);
+    Some((film, picture))
 }
 
 /// The picture at a time (ms) of the scene's recording; none without these.
 pub(super) fn picture(
-    film: &Film,
+    (film, picture): &(Film, StaticPicture),
     gpu: &Gpu,
     scene: &StillScene,
     time: Option<f64>,
@@ -34,7 +35,13 @@ pub(super) fn picture(
         return Ok(None);
     };
     let time = recording.time.nearest(time);
-    let colors = (&scene.content.table, &*scene.states);
-    let picture = film.picture(gpu, recording, time, colors);
-    picture.map(Some).map_err(|e| e.to_string())
+    let values = film.values(recording, time).map_err(|e| e.to_string())?;
+    let colors = KeyColors {
+        table: &scene.content.table,
+        states: &scene.states,
+        values: Some(&values),
+    };
+    let recolored = picture.recolor(gpu, &colors);
+    let image = recolored.and_then(|()| picture.image(gpu));
+    image.map(Some).map_err(|e| e.to_string())
 }

@@ -14,7 +14,7 @@ use neurotess::render::color::ColorTable;
 use neurotess::render::{
     Adaptive, AdaptiveSettings, BoundingSphere, Combined, Gpu, Image, MarkerSettings, Markers,
     Meshes, Occlusion, PictureError, PictureOptions, PngWriter, StaticError, StillRenderer,
-    Viewpoint, Watch,
+    Viewpoint, Watch, tiles,
 };
 
 use crate::io::background::spawn;
@@ -61,7 +61,7 @@ pub(crate) fn pictures(
     let overlay = still_scene.overlay(film_frames, options);
     let mut film = None;
     // Of the first picture; others may have more or fewer.
-    let mut tiles = 0;
+    let mut count = 0;
     for (number, (film_frame, file)) in film_frames.iter().zip_eq(&files).enumerate() {
         let stopped = || format!("stopped after {number} of {} pictures", files.len());
         if progress.is_canceled() {
@@ -90,8 +90,8 @@ pub(crate) fn pictures(
             let source = Combined::new(&mut adaptive)
                 .with_markers(markers.as_mut())
                 .with_meshes(meshes.as_mut());
-            tiles = picture.tiles(gpu, &source, &view);
-            let all = tiles * film_frames.len();
+            count = tiles(gpu, &source, &view, &picture);
+            let all = count * film_frames.len();
             progress.all.store(all, Ordering::Relaxed);
         }
         let mut drawn = Ok(());
@@ -131,7 +131,7 @@ pub(crate) fn pictures(
         }
         png.finish().map_err(broken)?;
         output.finish().map_err(|e| e.to_string())?;
-        let done = tiles * (number + 1);
+        let done = count * (number + 1);
         progress.done.store(done, Ordering::Relaxed);
     }
     Ok(files)
@@ -157,14 +157,14 @@ impl Prepared {
         let gpu = &*own;
         let mut picture = picture_options(still_scene, options);
         picture.look.clip = content::clip(&still_scene.look, &still_scene.spheres);
-        let mut adaptive = content::adaptive(gpu, &still_scene.content, picture.sub_pixels(gpu))
+        let mut adaptive = content::adaptive(gpu, &still_scene.content, gpu.sub_pixels(&picture))
             .map_err(|e| e.to_string())?;
         adaptive.set_settings(AdaptiveSettings {
             lod: LodCriterion::PixelError(0.25),
             wireframe: picture.look.wire > 0.0,
             ..Default::default()
         });
-        let mut markers = markers(still_scene, gpu, picture.sub_pixels(gpu))?;
+        let mut markers = markers(still_scene, gpu, gpu.sub_pixels(&picture))?;
         let meshes = meshes::upload(gpu, &still_scene.meshes);
         let mut meshes = meshes.map_err(|e| e.to_string())?;
         let mut renderer = StillRenderer::new();

@@ -102,7 +102,7 @@ fn what_is_found_equals_what_is_generated() {
     assert_eq!(fs::read(&known.file).expect("there"), before);
 }
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 #[neurotess_testing::test]
 fn proxies_are_kept_beside_meshes() {
     let folder = tempfile::tempdir().expect("a folder");

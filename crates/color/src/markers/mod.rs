@@ -10,9 +10,9 @@ mod synapses;
 
 use glam::DVec3;
 use neurotess_circuit::CircuitError;
-use neurotess_render::color::{Rgb, category};
-use neurotess_render::overlay::Legend;
-use neurotess_render::{BoundingSphere, Marker};
+use neurotess_picture::color::{Rgb, category};
+use neurotess_picture::overlay::Legend;
+use neurotess_picture::{BoundingSphere, Marker};
 
 use crate::own_colors::{ColorTarget, ColoredThing};
 use crate::scheme::{ColorScheme, Coloring, NOTHING};

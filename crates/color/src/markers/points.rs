@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use neurotess_circuit::PointTable;
-use neurotess_render::Marker;
-use neurotess_render::color::category;
+use neurotess_picture::color::category;
+use neurotess_picture::markers::Marker;
 
 use super::{MarkerError, MarkerRow, MarkerSet, by_name, by_number, listed};
 use crate::scheme::ColorScheme;

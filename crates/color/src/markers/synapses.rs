@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::DAffine3;
 use neurotess_circuit::{Circuit, Edges, NodeRef, SynapseSide};
-use neurotess_render::Marker;
-use neurotess_render::color::category;
+use neurotess_picture::color::category;
+use neurotess_picture::markers::Marker;
 
 use super::edges::{EdgeSynapses, ShownCell, ShownCells, SynapsesOf};
 use super::sites::placed;

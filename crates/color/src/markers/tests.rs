@@ -2,7 +2,7 @@ use std::collections::HashMap;
 
 use neurotess_circuit::SynapseSide::Afferent;
 use neurotess_circuit::{Circuit, PointTable};
-use neurotess_render::color::{CATEGORY_BIT, ColorMap, Palette};
+use neurotess_picture::color::{CATEGORY_BIT, ColorMap, Palette};
 
 use super::*;
 
@@ -47,7 +47,7 @@ fn colors_of_markers_follow_those_that_cells_use() {
     // Its cells use a category beyond the end of the table.
     let mut coloring = Coloring {
         color_keys: vec![vec![category(0), category(4)]],
-        table: neurotess_render::color::ColorTable {
+        table: neurotess_picture::color::ColorTable {
             categories: vec![[1; 3], [2; 3]],
             ..Default::default()
         },

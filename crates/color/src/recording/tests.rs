@@ -1,5 +1,5 @@
 use neurotess_mesh::Role;
-use neurotess_render::color::CATEGORY_BIT;
+use neurotess_picture::color::CATEGORY_BIT;
 
 use super::*;
 use crate::CellSeries;
@@ -52,7 +52,7 @@ fn numbers_in_memory_are_a_recording() {
     let keys = recording.color_keys()[0].iter().enumerate();
     let visible: Vec<_> = keys
         .filter(|(_, key)| *key & CATEGORY_BIT == 0)
-        .map(|(_, &color_key)| neurotess_render::VisibleKey {
+        .map(|(_, &color_key)| neurotess_picture::recolor::VisibleKey {
             instance: 1,
             color_key,
         })

@@ -155,7 +155,7 @@ fn source(
         lod: LodCriterion::PixelError(options.pixels),
         ..AdaptiveSettings::default()
     };
-    let sub_pixels = options.picture(cells.len()).sub_pixels(gpu);
+    let sub_pixels = gpu.sub_pixels(&options.picture(cells.len()));
     let mut source = Adaptive::new(gpu, scene, settings, sub_pixels)?;
     let all = cells
         .iter()

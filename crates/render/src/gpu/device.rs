@@ -5,6 +5,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use neurotess_picture::PictureOptions;
 use wgpu::{Adapter, Features, Limits};
 
 use crate::gpu::adapter::{AdapterName, find_adapter, name};
@@ -58,6 +59,11 @@ impl Fault {
 }
 
 impl Gpu {
+    /// Number of sub-pixels along a pixel's side.
+    pub fn sub_pixels(&self, options: &PictureOptions) -> u32 {
+        options.sub_pixels(samples_in_sub_pixel(self, options.samples_taken()))
+    }
+
     /// Opens the best adapter, or the best of those whose backend is `wanted` or whose name contains it (in
     /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE)
     /// decides, if it is set.
@@ -172,6 +178,16 @@ fn complaint(error: wgpu::Error) -> DeviceError {
 
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL,
+/// for which naga 30 translates sample masks wrongly.
+pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
+    if samples == 1 || gpu.adapter.backend == "gl" {
+        1
+    } else {
+        4
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! halving what may be empty: a dozen questions.
 
 use crate::sources::VertexSource;
-use crate::view::frame::{Frame, Tile};
+use neurotess_picture::{Frame, Tile};
 
 /// First and last sub-pixel, across and down.
 pub(crate) type Rectangle = [[i32; 2]; 2];

@@ -9,13 +9,14 @@ use neurotess_refine::wgsl::{Shader, ShaderParts, WgslFile};
 use crate::gpu::shader;
 use crate::output::ids::ids_shader;
 use crate::shading::finish::{Last, finish_shader, occlusion_constants};
-use crate::shading::shade::{GUARD, HALF_WIDTH, KEY, PipelineKey, constants, shade_shader};
+use crate::shading::shade::{GUARD, PipelineKey, constants, shade_shader};
 use crate::sources::adaptive::grids::{GRID_SIZE, VERTICES_TOGETHER};
 use crate::sources::adaptive::passes::{ENTRIES, modules};
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::settings::{self, FlatIndices};
 use crate::sources::adaptive::work::QUEUE_U32S;
 use crate::sources::markers;
+use neurotess_picture::{HALF_WIDTH, KEY};
 
 /// Samples of a pixel in each step.
 const SAMPLES: u32 = 4;

@@ -15,7 +15,7 @@ use crate::output::tiles::TileRenderer;
 use crate::shading::shade::{self, DEPTH_FORMAT, GUARD, PipelineKey, Shade};
 use crate::sources::VertexSource;
 use crate::sources::pick::{BATCH_SHIFT, FINE, POINT_BITS, PickId, PickIds};
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of an id.

@@ -7,10 +7,11 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::Pass;
 use crate::output::tiles::TileRenderer;
-use crate::scene::color::ColorTable;
-use crate::shading::shade::{Look, PipelineKey};
+use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
+use neurotess_picture::Look;
+use neurotess_picture::color::ColorTable;
 
 /// The time that a frame took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

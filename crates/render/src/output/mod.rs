@@ -1,35 +1,12 @@
-//! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; overlays; picking ids.
+//! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; picking ids.
 
-#[cfg(feature = "gpu")]
-pub(crate) mod annotation;
-#[cfg(feature = "gpu")]
-pub(crate) mod axes;
-#[cfg(feature = "gpu")]
 pub(crate) mod extent;
-#[cfg(feature = "gpu")]
 pub(crate) mod host;
-#[cfg(feature = "gpu")]
 pub(crate) mod ids;
-pub(crate) mod image;
-pub(crate) mod legend;
-#[cfg(feature = "gpu")]
 pub(crate) mod meter;
-#[cfg(feature = "gpu")]
-pub(crate) mod options;
-#[cfg(feature = "gpu")]
-pub(crate) mod overlay;
-#[cfg(feature = "gpu")]
 pub(crate) mod progressive;
-#[cfg(feature = "gpu")]
 pub(crate) mod static_picture;
-#[cfg(feature = "gpu")]
 pub(crate) mod still;
-#[cfg(feature = "gpu")]
-pub(crate) mod stroke;
-pub(crate) mod text;
-#[cfg(feature = "gpu")]
 pub(crate) mod tiles;
-#[cfg(feature = "gpu")]
 pub(crate) mod tiling;
-#[cfg(feature = "gpu")]
-pub(crate) mod watch;
+pub(crate) mod watched;

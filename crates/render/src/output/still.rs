@@ -10,18 +10,19 @@ use std::time::Instant;
 use thiserror::Error;
 
 use crate::gpu::device::Gpu;
+use crate::gpu::device::samples_in_sub_pixel;
 use crate::gpu::error::DeviceError;
 use crate::gpu::timing::PASSES;
-use crate::output::image::Image;
-use crate::output::options::{PictureOptions, Viewpoint, samples_in_sub_pixel};
 use crate::output::static_picture::StaticPicture;
-use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
 use crate::output::tiles::TileRenderer;
 use crate::output::tiling::Tiling;
-use crate::output::watch::Watch;
-use crate::scene::color::ColorTable;
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
+use neurotess_picture::Image;
+use neurotess_picture::Watch;
+use neurotess_picture::color::ColorTable;
+use neurotess_picture::recolor::{MatrixBuilder, Weights};
+use neurotess_picture::{PictureOptions, Viewpoint};
 
 /// Why a picture was not made.
 #[derive(Debug, Error)]

@@ -9,12 +9,12 @@ use std::ops::Range;
 
 use crate::gpu::device::Gpu;
 use crate::output::extent::{Rectangle, extent};
-use crate::output::options::{PictureOptions, Viewpoint};
 use crate::output::tiles::{Finishing, KeptTile};
 use crate::shading::finish::BLUR;
 use crate::shading::shade::GUARD;
 use crate::sources::VertexSource;
-use crate::view::frame::{Frame, Tile};
+use neurotess_picture::{Frame, Tile};
+use neurotess_picture::{PictureOptions, Viewpoint};
 
 /// A picture's tiles.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Tiling {
         view: &Viewpoint,
         options: &PictureOptions,
     ) -> Self {
-        let scale = options.sub_pixels(gpu);
+        let scale = gpu.sub_pixels(options);
         let size = options.size.map(|n| n.max(1));
         let occlusion = options.occlusion.reach(&view.camera, size[1] * scale);
         let margin = occlusion.map_or(0, |(_, most)| most as u32 + BLUR + 2);
@@ -160,11 +160,14 @@ impl Band {
 /// Most pixels of a band that has rows in which nothing shows.
 const MAX_BAND: u32 = 1 << 22;
 
-impl PictureOptions {
-    /// Number of tiles of a picture.
-    pub fn tiles(&self, gpu: &Gpu, source: &dyn VertexSource, view: &Viewpoint) -> usize {
-        Tiling::new(gpu, source, view, self).len()
-    }
+/// Number of tiles that a picture is drawn in.
+pub fn tiles(
+    gpu: &Gpu,
+    source: &dyn VertexSource,
+    view: &Viewpoint,
+    options: &PictureOptions,
+) -> usize {
+    Tiling::new(gpu, source, view, options).len()
 }
 
 /// What shows along a side of a picture.
@@ -293,7 +296,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::view::camera::Camera;
+    use neurotess_picture::Camera;
 
     const ROOMY: Most = Most {
         side: 16_000,

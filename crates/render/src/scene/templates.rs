@@ -3,16 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_picture::TemplateId;
 use neurotess_refine::{PartLayout, SHAPED_U32S, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
 use crate::gpu::buffers::{group_layout, storage};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-
-/// Index of a template among those of a [`Templates`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct TemplateId(pub u32);
 
 /// Number of patches in a cluster, which share a bounding sphere: the size of a workgroup.
 pub(crate) const CLUSTER: usize = 64;

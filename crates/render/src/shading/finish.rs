@@ -8,7 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::parallel::{all_of, beside};
 use crate::gpu::shader;
 use crate::shading::targets::Targets;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 /// Twin of `Finish` in `finish.wgsl`.
 #[repr(C)]

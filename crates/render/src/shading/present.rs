@@ -6,7 +6,7 @@ use neurotess_refine::wgsl::{Shader, ShaderParts};
 use crate::gpu::buffers::{UNFILTERED, group_layout, storage, texture, texture_binding, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
-use crate::scene::color::Rgb;
+use neurotess_picture::color::Rgb;
 
 /// The format that windows show without conversion: the screen's bytes.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -1,17 +1,17 @@
 //! The pipeline that shades a source's vertices, with shade.wgsl.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
 use neurotess_refine::wgsl::{Constants, Shader as Composed, ShaderParts};
 
 use crate::gpu::buffers::{group_layout, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::parallel::side_by_side;
 use crate::gpu::shader;
-use crate::scene::color::{CATEGORY_BIT, ColorTable, Rgb, is_dark, linear, luminance};
-use crate::shading::least_width::{CROWD, usual_least_width};
 use crate::sources::{SourceKey, VertexSource};
-use crate::view::frame::{Frame, Tile};
+use neurotess_picture::color::{CATEGORY_BIT, ColorTable, linear};
+use neurotess_picture::state::{GHOSTED, HIGHLIGHTED, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA};
+use neurotess_picture::{Frame, Tile};
+use neurotess_picture::{HALF_WIDTH, KEY, Light, Look, edge_color};
 
 /// Linear color, premultiplied.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -21,104 +21,6 @@ pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8
 pub(crate) const DISTANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Depth buffer: floating point, which reversed depth needs to be precise.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// How surfaces look.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
-    /// How surfaces are lit.
-    pub light: Light,
-    /// Width (pixels) of the wireframe's lines; 0: no wireframe.
-    pub wire: f32,
-    /// The plane behind which everything is cut away.
-    pub clip: Option<Clip>,
-    /// Color of [`HIGHLIGHTED`] instances, and its share, 0 to 1.
-    pub highlighted: (Rgb, f32),
-    /// Opacity of [`GHOSTED`] instances, 0 to 1.
-    pub ghosted: f32,
-    /// Background against which colors of the scale must stand out: colors about as light as the
-    /// background have edges, dark ones on a light background and light ones on a dark one. None,
-    /// or [`Light::Flat`]: no edges.
-    pub contrast: Option<Rgb>,
-    /// Least width (pixels) of neurites: thinner ones are drawn this wide, and no fainter. 0: as wide as
-    /// they are, and from a pixel on fainter instead of thinner.
-    pub least_width: f32,
-}
-
-/// A plane behind which everything is cut away.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clip {
-    /// A point of the plane (µm).
-    pub point: DVec3,
-    /// Unit normal, towards the side that is kept.
-    pub normal: DVec3,
-}
-
-/// State of an instance: it has the color of [`Look::highlighted`].
-pub const HIGHLIGHTED: u32 = 1;
-/// State of an instance: it is transparent, see [`Look::ghosted`].
-pub const GHOSTED: u32 = 2;
-/// State of an instance: only its soma is drawn.
-pub const WITHOUT_NEURITES: u32 = 4;
-/// State of an instance: its soma is not drawn.
-pub const WITHOUT_SOMA: u32 = 8;
-/// State of an instance: drafts draw an outline around it, see
-/// [`ProgressiveRenderer::draft`](crate::ProgressiveRenderer::draft).
-pub const OUTLINED: u32 = 16;
-
-/// How surfaces are lit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Light {
-    /// A soft key light from the upper left, a weak fill and the sky.
-    #[default]
-    Soft,
-    /// The same with the key light from this direction, in the picture's coordinates: right, up,
-    /// towards the viewer. Any length but 0.
-    From(Vec3),
-    /// No light: plain colors.
-    Flat,
-}
-
-impl Look {
-    /// [`usual_least_width`](crate::usual_least_width).
-    pub fn usual_least_width(neurons: usize) -> f32 {
-        usual_least_width(neurons)
-    }
-
-    /// The most neurons that [`Look::usual_least_width`] takes for single ones.
-    pub const CROWD: usize = CROWD;
-
-    /// The shorter side (pixels) of pictures that [`Look::width_at`] leaves widths as they are in.
-    pub const REFERENCE_SIDE: f32 = 960.0;
-
-    /// A width (pixels) that is meant for pictures of up to [`Look::REFERENCE_SIDE`] pixels, in a picture of this size: larger
-    /// ones look the same from farther away. In smaller ones it stays, since less than a pixel would be fainter.
-    pub fn width_at(width: f32, size: [u32; 2]) -> f32 {
-        let shorter = size[0].min(size[1]) as f32;
-        width * (shorter / Self::REFERENCE_SIDE).max(1.0)
-    }
-
-    /// The background against which colors of a scale have edges. Plain colors have none.
-    fn edges_against(&self) -> Option<Rgb> {
-        self.contrast.filter(|_| self.light != Light::Flat)
-    }
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            light: Light::Soft,
-            wire: 0.0,
-            clip: None,
-            highlighted: ([255, 160, 0], 0.0),
-            ghosted: 0.25,
-            contrast: None,
-            least_width: 0.0,
-        }
-    }
-}
-
-/// Direction of [`Light::Soft`]'s key light.
-pub(crate) const KEY: Vec3 = Vec3::new(-0.5, 0.62, 0.75);
 
 /// Twin of `Shade` in `shade.wgsl`.
 #[repr(C)]
@@ -231,23 +133,10 @@ impl Shade {
     }
 }
 
-/// Linear color of the edges of this look, and the background's luminance; one above 1 gives no
-/// edges.
-pub(crate) fn edge_color(look: &Look) -> [f32; 4] {
-    let Some(background) = look.edges_against() else {
-        return [0.0, 0.0, 0.0, 100.0];
-    };
-    let ink = if is_dark(background) { 0.6 } else { 0.05 };
-    [ink, ink, ink, luminance(background)]
-}
-
 /// Sub-pixels by which the viewport is larger than the tile on each side. Software rasterizers clip
 /// at the viewport, and a clipped edge may cover other samples: one in 600,000 differed at the
 /// borders of tiles.
 pub(crate) const GUARD: f32 = 512.0;
-
-/// Half the width (pixels) of the thinnest line drawn: thinner ones would look dotted.
-pub(crate) const HALF_WIDTH: f32 = 0.5;
 
 /// Draws samples from a source's vertices.
 pub(crate) struct Shader {
@@ -433,22 +322,4 @@ pub(crate) fn entries() -> Vec<wgpu::BindGroupLayoutEntry> {
         storage(1, vertex, true),
         storage(2, vertex, true),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn widths_grow_with_pictures_and_never_shrink() {
-        let widths = [
-            [1280, 960],
-            [3840, 2880],
-            [2880, 3840],
-            [4000, 500],
-            [64, 48],
-        ]
-        .map(|size| Look::width_at(1.5, size));
-        assert_eq!(widths, [1.5, 4.5, 4.5, 1.5, 1.5]);
-    }
 }

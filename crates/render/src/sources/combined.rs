@@ -8,7 +8,7 @@ use super::meshes::Meshes;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::sources::{SourceKey, VertexSource};
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 /// Vertex sources, markers and meshes, drawn together.
 pub struct Combined<'a> {

@@ -3,7 +3,7 @@
 use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 use crate::gpu::device::Gpu;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 /// Something that is drawn beside a vertex source: see
 /// [`Combined`](crate::sources::combined::Combined).

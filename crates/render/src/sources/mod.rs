@@ -25,7 +25,6 @@ pub(crate) mod combined;
 mod companion;
 pub(crate) mod markers;
 pub(crate) mod meshes;
-mod octahedral;
 pub(crate) mod pick;
 pub(crate) mod prerefined;
 
@@ -33,7 +32,7 @@ use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 /// Which shaders a source draws with: equal keys have equal shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -116,7 +116,7 @@ pub(crate) fn explored(
     options: &PictureOptions,
 ) -> Image {
     let (color_keys, table) = by_type(mesh);
-    let mut source = Exploration::new(gpu, options.sub_pixels(gpu)).expect("a source");
+    let mut source = Exploration::new(gpu, gpu.sub_pixels(options)).expect("a source");
     source.set_budget(budget);
     let ids = source
         .add(gpu, &[Proxy::new(mesh, &color_keys)])

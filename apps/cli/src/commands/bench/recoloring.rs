@@ -62,7 +62,7 @@ pub(super) fn run(args: &StaticArgs, reporter: &Reporter) -> anyhow::Result<()> 
         samples: args.samples,
         ..PictureOptions::default()
     };
-    let mut source = Exploration::new(&gpu, options.sub_pixels(&gpu))?;
+    let mut source = Exploration::new(&gpu, gpu.sub_pixels(&options))?;
     source.set_budget(args.budget);
     let ids = source.add(&gpu, &proxies)?;
     let mut document = Document {

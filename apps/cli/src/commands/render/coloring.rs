@@ -4,14 +4,14 @@ use std::path::Path;
 
 use anyhow::Context;
 use neurotess::coloring::{
-    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, FilmError, MarkerSet,
-    MeshValues, OwnNumbers, Recording, by_attribute, by_values,
+    self, Cell, ClosestColors, ColorScheme, Coloring, DECAY, Film, MarkerSet, MeshValues,
+    OwnNumbers, Recording, by_attribute, by_values,
 };
 use neurotess::generate::unused_kinds;
 use neurotess::morphology::NeuriteKind;
+use neurotess::render::VisibleKey;
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::Legend;
-use neurotess::render::{Gpu, Image, StaticPicture};
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;
@@ -129,27 +129,17 @@ impl PictureColors {
     }
 
     /// A film of the series.
-    pub(crate) fn film(&self, picture: StaticPicture) -> Option<Film> {
+    pub(crate) fn film(&self, keys: &[VisibleKey]) -> Option<Film> {
         let series = self.series.as_ref()?;
-        Some(Film::new(picture, &series.recording, series.range, DECAY))
+        Some(Film::new(keys, &series.recording, series.range, DECAY))
     }
 
-    /// A picture of the film of the series.
-    pub(crate) fn film_picture(
-        &self,
-        gpu: &Gpu,
-        film: &Film,
-        number: usize,
-    ) -> anyhow::Result<Image> {
+    /// What the keys of the film are colored by in a picture of the series.
+    pub(crate) fn film_values(&self, film: &Film, number: usize) -> anyhow::Result<Vec<f32>> {
         let series = self.series.as_ref();
         let timed = series.and_then(|series| Some((series, *series.times.get(number)?)));
         let (series, time) = timed.context("there is no such picture")?;
-        let colors = (&self.coloring.table, &[][..]);
-        film.picture(gpu, &series.recording, time, colors)
-            .map_err(|e| match e {
-                FilmError::Recording(e) => whole(e),
-                FilmError::Device(e) => e.into(),
-            })
+        film.values(&series.recording, time).map_err(whole)
     }
 }
 

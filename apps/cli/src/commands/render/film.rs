@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use neurotess::coloring::Film;
 use neurotess::render::{
-    BoundingSphere, Camera, Cost, Gpu, Image, PictureOptions, StaticError, StillRenderer, Viewpoint,
+    BoundingSphere, Camera, Cost, Gpu, Image, KeyColors, PictureOptions, StaticError,
+    StaticPicture, StillRenderer, Viewpoint, tiles,
 };
 
 use super::coloring::PictureColors;
@@ -13,6 +14,7 @@ use super::vertex_source::PictureSource;
 /// A film, and what its next picture costs besides being colored.
 pub(super) struct FixedFilm {
     film: Film,
+    picture: StaticPicture,
     cost: Cost,
 }
 
@@ -49,14 +51,14 @@ impl FixedFilm {
         };
         let (table, _) = colored.picture(0)?;
         let mut source = source.as_vertex_source();
-        let tiles = options.tiles(gpu, &source, &view);
+        let tiles = tiles(gpu, &source, &view, options);
         let made = renderer.render_static(gpu, &mut source, &view, &table, options);
         let picture = match made {
             Ok(picture) => picture,
             Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
             Err(e) => anyhow::bail!("{e}"),
         };
-        let Some(film) = colored.film(picture) else {
+        let Some(film) = colored.film(picture.keys()) else {
             return Ok(None);
         };
         let cost = Cost {
@@ -64,7 +66,11 @@ impl FixedFilm {
             tiles,
             ..Cost::default()
         };
-        Ok(Some(Self { film, cost }))
+        Ok(Some(Self {
+            film,
+            picture,
+            cost,
+        }))
     }
 
     /// The picture of a number.
@@ -75,7 +81,16 @@ impl FixedFilm {
         number: usize,
     ) -> anyhow::Result<(Image, Cost)> {
         let clock = Instant::now();
-        let image = colored.film_picture(gpu, &self.film, number)?;
+        let values = colored.film_values(&self.film, number)?;
+        self.picture.recolor(
+            gpu,
+            &KeyColors {
+                table: &colored.coloring.table,
+                states: &[],
+                values: Some(&values),
+            },
+        )?;
+        let image = self.picture.image(gpu)?;
         let mut cost = self.cost.clone();
         // The first picture took the time to draw it.
         cost.cpu_ms += clock.elapsed().as_secs_f64() * 1e3;
@@ -84,7 +99,7 @@ impl FixedFilm {
     }
 
     pub(super) fn stats(&self) -> FilmStats {
-        let picture = self.film.static_picture();
+        let picture = &self.picture;
         FilmStats {
             visible_keys: picture.keys().len(),
             compartments_read: self.film.compartments(),

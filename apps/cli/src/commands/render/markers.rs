@@ -81,7 +81,7 @@ pub(super) fn upload(
     let settings = MarkerSettings {
         shape: args.markers.shape(),
         radius: 0.5 * args.markers.marker_size.unwrap_or(2.0 * usual.radius),
-        least: 0.5 * LEAST * f64::from(options.sub_pixels(gpu)),
+        least: 0.5 * LEAST * f64::from(gpu.sub_pixels(options)),
         most_triangles: budget.map_or(usual.most_triangles, |budget| {
             (SHARE_OF_BUDGET * f64::from(budget)) as usize
         }),

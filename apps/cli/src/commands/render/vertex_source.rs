@@ -171,7 +171,7 @@ impl CellSource {
             wireframe: args.wireframe,
             ..AdaptiveSettings::default()
         };
-        let mut source = Adaptive::new(gpu, scene, settings, options.sub_pixels(gpu))?;
+        let mut source = Adaptive::new(gpu, scene, settings, gpu.sub_pixels(options))?;
         source.set_bounds(covering(cells, placements));
         Ok(Self::Adaptive(Box::new(source)))
     }
@@ -228,7 +228,7 @@ impl CellSource {
 
 /// The whole picture as one frame.
 fn whole(gpu: &Gpu, camera: &Camera, near: f64, options: &PictureOptions) -> Frame {
-    let size = options.size.map(|n| n * options.sub_pixels(gpu));
+    let size = options.size.map(|n| n * gpu.sub_pixels(options));
     Frame::whole(*camera, near, size)
 }
 
@@ -252,7 +252,7 @@ fn budgeted(
             None => Arc::new(Proxy::new(&cell.mesh, color_keys)),
         })
         .collect();
-    let mut source = Exploration::new(gpu, options.sub_pixels(gpu))?;
+    let mut source = Exploration::new(gpu, gpu.sub_pixels(options))?;
     source.set_budget(args.budget.unwrap_or(DEFAULT_BUDGET));
     let ids = source.add_streamed(gpu, &proxies, args.gpu.gpu_memory)?;
     let instances = placements.iter().map(|&(cell, placement)| Instance {

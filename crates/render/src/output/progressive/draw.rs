@@ -5,7 +5,7 @@ use crate::gpu::error::DeviceError;
 use crate::output::static_picture::StaticPicture;
 use crate::output::tiles::TilePass;
 use crate::sources::VertexSource;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
 
 use super::ProgressiveRenderer;
 use super::canvas::Canvas;

@@ -26,15 +26,15 @@ use std::sync::atomic::Ordering;
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::samples_in_sub_pixel;
 use crate::gpu::error::DeviceError;
 use crate::output::ids::Identifier;
-use crate::output::options::samples_in_sub_pixel;
 use crate::output::tiles::TileRenderer;
-use crate::scene::color::{ColorTable, InstanceValues};
 use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::present::{Outlines, Presenter};
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
+use neurotess_picture::color::{ColorTable, InstanceValues};
 
 use canvas::Canvas;
 use clock::Clock;

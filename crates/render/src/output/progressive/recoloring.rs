@@ -6,15 +6,16 @@
 
 use crate::gpu::buffers::make;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::samples_in_sub_pixel;
 use crate::gpu::error::DeviceError;
-use crate::output::options::samples_in_sub_pixel;
+use crate::output::static_picture::StaticPicture;
 use crate::output::static_picture::collect::{Collector, Part, Wanted};
-use crate::output::static_picture::matrix::{MatrixBuilder, Weights};
-use crate::output::static_picture::{KeyColors, StaticPicture};
 use crate::output::tiles::TilePass;
 use crate::shading::finish::{BLUR, Finish};
 use crate::sources::VertexSource;
-use crate::view::frame::{Frame, Tile};
+use neurotess_picture::recolor::KeyColors;
+use neurotess_picture::recolor::{MatrixBuilder, Weights};
+use neurotess_picture::{Frame, Tile};
 
 use super::step::{finish_uniform, offset, selected, shade};
 use super::under_way::UnderWay;

@@ -1,12 +1,13 @@
 //! What a picture shows, and what one step of it draws.
 
-use crate::output::options::Occlusion;
 use crate::output::tiles::TileRenderer;
-use crate::scene::color::{Rgb, linear};
 use crate::shading::finish::Finish;
-use crate::shading::shade::{Look, Shade};
-use crate::view::camera::Camera;
-use crate::view::frame::Frame;
+use crate::shading::shade::Shade;
+use neurotess_picture::Camera;
+use neurotess_picture::Frame;
+use neurotess_picture::Look;
+use neurotess_picture::Occlusion;
+use neurotess_picture::color::{Rgb, linear};
 
 /// What a picture shows, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! How far a picture has come, and what its slices are.
 
-use crate::output::options::Occlusion;
 use crate::sources::VertexSource;
+use neurotess_picture::Occlusion;
 
 use super::step::{Steps, ViewParams};
 

@@ -1,6 +1,6 @@
 //! The passes that find out which color keys show in which pixels, and with what weights.
 
-use bytemuck::{Pod, Zeroable};
+use neurotess_picture::recolor::{Collected, Weighed};
 use neurotess_refine::wgsl::{Shader, ShaderParts};
 
 use crate::gpu::buffers::{group_layout, make, read_back, storage, texture_binding};
@@ -11,29 +11,7 @@ use crate::shading::finish::BLUR;
 use crate::shading::keyed::{KeyedShader, KeyedTargets};
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
-use crate::view::frame::Frame;
-
-/// What a color key adds to a pixel. Twin of the struct in collect.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct Weighed {
-    pub(crate) pixel: u32,
-    pub(crate) color_key: u32,
-    pub(crate) instance: u32,
-    pub(crate) low: u32,
-    pub(crate) high: u32,
-}
-
-/// The pixels of a tile.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Collected {
-    /// Width and height.
-    pub(crate) size: [u32; 2],
-    /// By pixel: what does not depend on colors, white and coverage.
-    pub(crate) fixed: Vec<[f32; 2]>,
-    /// In any order; a color key may come more than once in a pixel.
-    pub(crate) weighed: Vec<Weighed>,
-}
+use neurotess_picture::Frame;
 
 /// Color keys of a pixel for which there is room at first, on average.
 const EXPECTED: u64 = 3;

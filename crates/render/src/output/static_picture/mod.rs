@@ -13,22 +13,17 @@
 //! ```
 
 pub(crate) mod collect;
-mod key_color;
-pub(crate) mod matrix;
 pub(crate) mod recolor;
 
 use crate::gpu::buffers::read_back;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::output::image::Image;
-use crate::scene::color::{ColorTable, Rgb, linear};
-use crate::shading::shade::{Look, edge_color};
+use neurotess_picture::Image;
+use neurotess_picture::color::{Rgb, linear};
+use neurotess_picture::{Look, edge_color};
 
-use key_color::Contrast;
-use matrix::Matrix;
+use neurotess_picture::recolor::{Contrast, KeyColors, Matrix, VisibleKey};
 use recolor::{Product, Recolor};
-
-pub use matrix::VisibleKey;
 
 /// A picture whose colors can be changed: see [`StillRenderer::render_static`].
 ///
@@ -39,18 +34,6 @@ pub struct StaticPicture {
     weights: usize,
     product: Product,
     look: Look,
-}
-
-/// The colors of a static picture.
-#[derive(Clone, Copy, Debug)]
-pub struct KeyColors<'a> {
-    /// Scale and categories; and values of instances, if `values` has none.
-    pub table: &'a ColorTable,
-    /// States of instances: of these, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) changes colors.
-    pub states: &'a [u32],
-    /// A value for each of [`StaticPicture::keys`], 0 to 1 or NaN: the color keys that are not
-    /// categories are then not looked up in the table's values.
-    pub values: Option<&'a [f32]>,
 }
 
 impl StaticPicture {

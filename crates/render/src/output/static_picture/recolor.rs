@@ -8,7 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::shader;
 
-use super::matrix::Matrix;
+use neurotess_picture::recolor::Matrix;
 
 /// Twin of `Recolor` in recolor.wgsl.
 #[repr(C)]

@@ -14,14 +14,16 @@ use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::gpu::parallel::beside;
 use crate::gpu::timing::{Pass, Timer};
-use crate::output::static_picture::collect::{Collected, Collector, Wanted};
-use crate::output::watch::Watch;
-use crate::scene::color::{ColorTable, linear};
+use crate::output::static_picture::collect::{Collector, Wanted};
 use crate::shading::finish::{Finish, Finisher, Last};
-use crate::shading::shade::{Look, PipelineKey, Shade, Shader, TableSizes};
+use crate::shading::shade::{PipelineKey, Shade, Shader, TableSizes};
 use crate::shading::targets::Targets;
 use crate::sources::VertexSource;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
+use neurotess_picture::Look;
+use neurotess_picture::Watch;
+use neurotess_picture::color::{ColorTable, linear};
+use neurotess_picture::recolor::Collected;
 
 use read::{filled, read_watched};
 

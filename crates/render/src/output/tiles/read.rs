@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::output::watch::Watch;
+use crate::output::watched::wait;
+use neurotess_picture::Watch;
 
 /// Waits for the device and copies the first bytes of a buffer; nothing if the watch has stopped
 /// the picture.
@@ -22,7 +23,7 @@ pub(super) fn read_watched(
         done.store(true, Ordering::Release);
     });
     match watch {
-        Some(watch) if !watch.wait(gpu, &mapped)? => return Ok(None),
+        Some(watch) if !wait(watch, gpu, &mapped)? => return Ok(None),
         Some(_) => {}
         None => gpu.wait()?,
     }

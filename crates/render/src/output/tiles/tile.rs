@@ -1,7 +1,7 @@
 //! A tile: what is drawn, what is kept of it, and how it is finished.
 
-use crate::scene::color::Rgb;
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
+use neurotess_picture::color::Rgb;
 
 /// What is drawn at once, and what is kept of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

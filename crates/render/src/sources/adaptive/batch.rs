@@ -5,7 +5,8 @@ use bytemuck::{Pod, Zeroable};
 use crate::scene::Scene;
 use crate::scene::templates::{CLUSTER, MAX_PATCHES};
 use crate::sources::adaptive::cull::shows;
-use crate::sources::adaptive::settings::{BatchUniforms, CullView, FrameUniforms, Placed, SECTION};
+use crate::sources::adaptive::settings::{BatchUniforms, FrameUniforms, Placed, SECTION};
+use neurotess_picture::CullView;
 
 /// Most slots of a batch.
 pub(crate) const MAX_SLOTS: usize = MAX_PATCHES;

@@ -10,11 +10,10 @@ use neurotess_refine::{
     Lod, PATCHES_OF_SPHERE, Refinement, dequantized, pack, patch_sphere, sphere_around,
 };
 
-use crate::scene::Placement;
 use crate::scene::templates::MAX_PATCHES;
-use crate::sources::adaptive::settings::{
-    AdaptiveSettings, CullView, FlatIndices, FrameUniforms, Placed,
-};
+use crate::sources::adaptive::settings::{FlatIndices, FrameUniforms, Placed};
+use neurotess_picture::Placement;
+use neurotess_picture::{AdaptiveSettings, CullView};
 
 /// What the device must decide for every patch of a mesh at a placement: nothing if it is culled,
 /// else the levels of its four sides. `values`: a level per tracing point.

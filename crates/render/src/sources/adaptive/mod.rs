@@ -25,11 +25,11 @@ use crate::sources::adaptive::batch::FramePlan;
 use crate::sources::adaptive::readback::FrameStats;
 use crate::sources::adaptive::refiner::Refiner;
 use crate::sources::adaptive::resolver::PickResolver;
-use crate::sources::adaptive::settings::{AdaptiveSettings, CullView};
 use crate::sources::{SourceKey, VertexSource};
-use crate::view::bounds::any_shows;
-use crate::view::frame::Frame;
-use crate::view::frustum::BoundingSphere;
+use neurotess_picture::BoundingSphere;
+use neurotess_picture::Frame;
+use neurotess_picture::bounds::any_shows;
+use neurotess_picture::{AdaptiveSettings, CullView};
 
 /// A scene that is refined as it is drawn. Memory does not depend on the level.
 #[derive(Debug)]

@@ -29,9 +29,10 @@ use crate::sources::adaptive::grids::{BUCKETS, Bucket, TUBE_BUCKETS, buckets};
 use crate::sources::adaptive::layouts::WorkLayouts;
 use crate::sources::adaptive::passes::Passes;
 use crate::sources::adaptive::settings::{
-    AdaptiveSettings, BatchUniforms, CullView, FlatIndices, FrameUniforms, Placed, constants,
+    BatchUniforms, FlatIndices, FrameUniforms, Placed, constants,
 };
 use crate::sources::adaptive::work::{Sizes, Work};
+use neurotess_picture::{AdaptiveSettings, CullView};
 
 /// Pipelines and work buffers of adaptive refinement.
 #[derive(Debug)]

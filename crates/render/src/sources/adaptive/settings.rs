@@ -2,18 +2,16 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
+use neurotess_picture::{AdaptiveSettings, CullView};
 use neurotess_refine::gpu::{self, GpuLodCriterion};
 use neurotess_refine::wgsl::Constants;
-use neurotess_refine::{Caps, LodCriterion, LodView, Path, RefineOptions};
 
-use crate::scene::Placement;
 use crate::scene::templates::{Base, CLUSTER};
 use crate::sources::adaptive::grids::{
     BUCKETS, FLAT_CORNER_SHIFT, FLAT_INDICES, GRID_SIZE, INDEX_BUCKET_SHIFT, INDEX_PATCH_MASK,
     INDEX_PATCH_SHIFT, INDEX_PLACE_MASK, INDEX_ROW_SHIFT,
 };
-use crate::view::camera::Camera;
-use crate::view::lens::PixelSize;
+use neurotess_picture::Placement;
 
 /// Number of slots that are counted and listed together.
 pub(crate) const SECTION: usize = 1024;
@@ -30,74 +28,6 @@ pub(crate) const QUEUE_SECTIONS: u32 = 0;
 pub(crate) const QUEUE_RINGS: u32 = 1;
 /// Kind of a lateral patch between two points with implicit rings, in a decision.
 pub(crate) const DECIDED_TUBE: u32 = 4;
-
-/// A camera and a picture's size, in the form that culling and the selection of levels take.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CullView {
-    /// Position of the eye (µm).
-    pub eye: DVec3,
-    /// Unit direction of view.
-    pub forward: DVec3,
-    /// Planes of the frustum relative to the eye, unit normals inwards. Those of the tile if a
-    /// picture is drawn in tiles.
-    pub planes: [Vec4; 5],
-    /// Size (µm) of a pixel by depth.
-    pub pixel: PixelSize,
-    /// Depth (µm) of the near plane.
-    pub near: f64,
-}
-
-impl CullView {
-    /// The view of a whole picture of this size (pixels).
-    pub fn new(camera: &Camera, width: u32, height: u32, near: f64) -> Self {
-        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
-        Self {
-            eye: camera.eye(),
-            forward: -camera.axes()[2],
-            planes: camera.frustum(aspect, near),
-            pixel: camera.pixel_size(f64::from(height.max(1))),
-            near,
-        }
-    }
-
-    /// The view that levels are selected for, in the coordinates of a template at a placement.
-    pub fn local_view(&self, placement: &Placement, origin: DVec3) -> LodView {
-        LodView {
-            eye: (placement.cell_from_world(self.eye) - origin).as_vec3(),
-            forward: (placement.rotation.inverse() * self.forward).as_vec3(),
-            slope: self.pixel.slope as f32,
-            flat: self.pixel.flat as f32 / placement.scale as f32,
-            near: (self.near / placement.scale) as f32,
-        }
-    }
-}
-
-/// How a frame is refined.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AdaptiveSettings {
-    /// What decides on the levels.
-    pub lod: LodCriterion,
-    /// Shape of the path between tracing points.
-    pub path: Path,
-    /// Shape of the ends.
-    pub caps: Caps,
-    /// What is smaller than this many pixels is left out; 0 leaves out nothing.
-    pub smallest: f32,
-    /// Whether vertices know their position in their patch's grid, as [`Look::wire`](crate::Look)
-    /// needs. Patches at level 1 then do not share corners, which costs time.
-    pub wireframe: bool,
-}
-
-impl AdaptiveSettings {
-    /// The same settings for refinement on the CPU.
-    pub fn options(&self) -> RefineOptions {
-        RefineOptions {
-            path: self.path,
-            caps: self.caps,
-            quads: false,
-        }
-    }
-}
 
 /// Twin of `Frame` in placed.wgsl.
 #[repr(C)]
@@ -260,6 +190,8 @@ pub(crate) fn constants() -> Constants {
 
 #[cfg(test)]
 mod tests {
+    use neurotess_picture::Camera;
+
     use super::*;
 
     #[test]

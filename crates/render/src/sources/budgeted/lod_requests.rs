@@ -9,10 +9,10 @@ use super::layout::{
     ERROR_OFFSET, ERROR_STEPS, LEVELS, LOWEST_OCTAVE, TWIG_FADES,
 };
 use super::proxy::Proxy;
-use crate::scene::Placement;
-use crate::view::camera::Camera;
-use crate::view::frame::Frame;
-use crate::view::lens::PixelSize;
+use neurotess_picture::Camera;
+use neurotess_picture::Frame;
+use neurotess_picture::PixelSize;
+use neurotess_picture::Placement;
 
 const DISC_QUADS: u32 = 4;
 const DOME_QUADS: u32 = 18;

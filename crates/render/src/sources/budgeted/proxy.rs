@@ -9,7 +9,7 @@
 use glam::{DVec3, Vec3};
 
 use super::layout::{CHUNK_ONE_COLOR_KEY, CHUNK_SOMA, CHUNK_TWIG, Chunk};
-use crate::view::frustum::BoundingSphere;
+use neurotess_picture::BoundingSphere;
 
 /// A template for exploration mode, computed on the host, ready to be uploaded.
 #[derive(Clone, Debug, Default)]

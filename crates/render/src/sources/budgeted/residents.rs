@@ -12,8 +12,8 @@ use super::streaming::Streaming;
 use super::{Exploration, in_cells};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::scene::{Instance, SceneError, TemplateId, check_placement};
-use crate::view::frame::Frame;
+use neurotess_picture::Frame;
+use neurotess_picture::{Instance, SceneError, TemplateId, check_placement};
 
 /// Why a scene cannot be drawn in exploration mode.
 #[derive(Debug, thiserror::Error)]

@@ -5,13 +5,13 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::SurfaceMesh;
+use neurotess_picture::meshes::Lit;
+use neurotess_picture::octahedral::pack_normal;
 
-use super::normals::Lit;
 use crate::gpu::buffers::upload;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::sources::octahedral::pack_normal;
-use crate::view::frustum::BoundingSphere;
+use neurotess_picture::BoundingSphere;
 
 /// Triangles in a run: some thousand, so that culling takes far less time than drawing.
 const RUN: usize = 4096;

@@ -8,11 +8,11 @@
 //! Translucent ones need no order: see sheets.wgsl.
 
 mod geometry;
-mod normals;
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+use neurotess_picture::meshes::{MeshLook, SHEET_DEPTH};
 use neurotess_refine::wgsl::{ShaderParts, WgslFile};
 
 pub use self::geometry::MeshGeometry;
@@ -23,39 +23,13 @@ use super::pick::PickId;
 use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout, group_with_frame, make, storage, uniform};
 use crate::gpu::device::Gpu;
 use crate::gpu::shader;
-use crate::view::frame::Frame;
-use crate::view::frustum::{BoundingSphere, shows};
+use neurotess_picture::Frame;
+use neurotess_picture::{BoundingSphere, bounds::shows};
 
 /// Set in the first number of a mesh's picking id. Markers have the bit above it.
 const MESH_BIT: u32 = 1 << 30;
 /// Instance of meshes: beyond all instances, so they have neither values nor a state.
 const NO_INSTANCE: u32 = u32::MAX - 1;
-/// Sub-pixels of depth within which layers of one mesh that face the same way count as one surface: see sheets.wgsl.
-/// Larger: layers that are closer hide one another. Smaller: more grain on slopes.
-const SHEET_DEPTH: f32 = 24.0;
-
-/// How a mesh looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshLook {
-    /// What its color is looked up by: see [`ColorTable`](crate::color::ColorTable). A category, since it
-    /// belongs to no instance that has values. Meshes with keys of their own
-    /// ([`MeshGeometry::with_keys`]) have those instead.
-    pub color_key: u32,
-    /// Share of what lies behind that each of its layers hides, 0 to 1.
-    pub opacity: f32,
-    /// Whether only the edges of its faces are drawn.
-    pub edges: bool,
-    /// Micrometers of a unit of its coordinates.
-    pub scale: f64,
-}
-
-impl MeshLook {
-    /// Whether things behind it show.
-    pub fn is_translucent(&self) -> bool {
-        self.edges || self.opacity < 1.0
-    }
-}
-
 /// Twin of `MeshFrame` in `meshes.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]

@@ -10,8 +10,8 @@ use super::{PrerefinedSurface, Resident};
 use crate::gpu::buffers::UNIFORM_STRIDE;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::view::frame::Frame;
-use crate::view::frustum::shows;
+use neurotess_picture::Frame;
+use neurotess_picture::bounds::shows;
 
 /// Triangles in a run: some thousand, so that culling takes far less time than drawing.
 const RUN: usize = 4096;

@@ -19,9 +19,9 @@ use crate::gpu::buffers::{UNIFORM_STRIDE, group_layout};
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
 use crate::sources::{SourceKey, VertexSource};
-use crate::view::bounds::{any_shows, bounds};
-use crate::view::frame::Frame;
-use crate::view::frustum::BoundingSphere;
+use neurotess_picture::BoundingSphere;
+use neurotess_picture::Frame;
+use neurotess_picture::bounds::{any_shows, bounds};
 
 use chunk::{CHUNK, Chunk, Part, buffer};
 

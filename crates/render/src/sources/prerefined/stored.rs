@@ -8,7 +8,7 @@ use neurotess_refine::wgsl::ShaderParts;
 use super::PrerefinedSurface;
 use crate::gpu::buffers::{storage, uniform};
 use crate::gpu::shader;
-use crate::sources::octahedral::pack_normal;
+use neurotess_picture::octahedral::pack_normal;
 
 /// Twin of `StoredVertex` in `prerefined.wgsl`.
 #[repr(C)]

@@ -22,11 +22,11 @@ use super::layout::{MAX_SEGMENTS, Shape};
 use super::proxy::Proxy;
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use crate::scene::Instance;
-use crate::view::frame::Frame;
-use crate::view::lens::PixelSize;
 use memory::{base_of, room_for, total};
 use needs::View;
+use neurotess_picture::Frame;
+use neurotess_picture::Instance;
+use neurotess_picture::PixelSize;
 use reduced::{Detail, reduced};
 use rooms::Rooms;
 

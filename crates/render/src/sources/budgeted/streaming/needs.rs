@@ -2,11 +2,11 @@
 
 use glam::{Mat3, Vec3};
 
-use crate::scene::Instance;
 use crate::sources::budgeted::proxy::Proxy;
-use crate::view::frame::Frame;
-use crate::view::frustum::shows;
-use crate::view::lens::PixelSize;
+use neurotess_picture::Frame;
+use neurotess_picture::Instance;
+use neurotess_picture::PixelSize;
+use neurotess_picture::bounds::shows;
 
 /// An instance this many times as far as it is large is asked as a whole, else chunk by chunk.
 const FAR: f32 = 4.0;

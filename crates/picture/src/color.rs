@@ -7,7 +7,7 @@
 
 use std::str::FromStr;
 
-pub(crate) use neurotess_mesh::palette::luminance;
+pub use neurotess_mesh::palette::luminance;
 pub use neurotess_mesh::palette::{Palette, Rgb, is_dark, linear};
 
 /// Set in the color key of a category.
@@ -74,7 +74,7 @@ impl InstanceValues {
 
     /// The value of an instance at an index, as [`InstanceValues::push`] got it, clamped; none if
     /// there is none.
-    pub(crate) fn value(&self, instance: u32, index: u32) -> Option<f32> {
+    pub fn value(&self, instance: u32, index: u32) -> Option<f32> {
         let first = *self.first.get(instance as usize)?;
         let four = self.fours.get(first as usize + index as usize / 4)?;
         Some(four[index as usize % 4]).filter(|&value| value >= 0.0)
@@ -88,7 +88,7 @@ const NOWHERE: u32 = 1 << 24;
 
 impl ColorTable {
     /// Linear colors, those of the scale first; never empty.
-    pub(crate) fn linear(&self) -> Vec<[f32; 4]> {
+    pub fn linear(&self) -> Vec<[f32; 4]> {
         let all = self.scale.iter().chain(&self.categories);
         let mut entries: Vec<[f32; 4]> = all.map(|&rgb| extended(linear(rgb))).collect();
         if entries.is_empty() {
@@ -99,7 +99,7 @@ impl ColorTable {
 
     /// The buffer that shaders look colors up in, and the number of colors. The colors come first,
     /// then the index of each instance's first values, then the values, four to an entry.
-    pub(crate) fn entries(&self) -> (Vec<[f32; 4]>, u32) {
+    pub fn entries(&self) -> (Vec<[f32; 4]>, u32) {
         let mut entries = self.linear();
         let colors = entries.len() as u32;
         let InstanceValues { first, fours } = &self.values;

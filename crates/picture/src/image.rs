@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
 
 /// Pixels: rows from the top, four bytes each, sRGB with straight alpha.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl Image {
     }
 
     /// An image of one color.
-    pub(crate) fn filled(width: u32, height: u32, pixel: [u8; 4]) -> Self {
+    pub fn filled(width: u32, height: u32, pixel: [u8; 4]) -> Self {
         Self {
             width,
             height,
@@ -44,7 +44,7 @@ impl Image {
     }
 
     /// Copies the rows of a tile, from this column and row on, as far as they fit.
-    pub(crate) fn copy_from(&mut self, [left, top]: [u32; 2], tile: &[u8], tile_width: u32) {
+    pub fn copy_from(&mut self, [left, top]: [u32; 2], tile: &[u8], tile_width: u32) {
         let row = 4 * self.width as usize;
         let (start, tile_row) = (4 * left as usize, 4 * tile_width as usize);
         let length = tile_row.min(row - start);

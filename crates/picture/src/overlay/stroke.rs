@@ -1,7 +1,7 @@
 //! Lines over a picture.
 
-use crate::output::image::Image;
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
+use crate::image::Image;
 
 /// Draws a line over a band of a picture, whose first row is `top`. Where its segments meet it is as opaque as elsewhere.
 pub(crate) fn stroke(

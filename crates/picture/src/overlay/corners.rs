@@ -1,9 +1,9 @@
 //! Legend, scale bar and axes in the corners of a picture.
 
-use crate::output::axes::axes;
-use crate::output::image::Image;
-use crate::output::legend::{Legend, nice_length, scale_bar};
-use crate::scene::color::{Rgb, is_dark};
+use crate::color::{Rgb, is_dark};
+use crate::image::Image;
+use crate::overlay::axes::axes;
+use crate::overlay::legend::{Legend, nice_length, scale_bar};
 use crate::view::camera::Camera;
 use crate::view::frustum::BoundingSphere;
 

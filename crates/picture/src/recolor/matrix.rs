@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::collect::{Collected, Weighed};
+use super::{Collected, Weighed};
 
 /// A color key of an instance, of which something shows in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -19,25 +19,30 @@ pub struct VisibleKey {
 /// What a color adds to a pixel. Twin of the struct in recolor.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct Weight {
-    pub(crate) color: u32,
-    pub(crate) low: u32,
-    pub(crate) high: u32,
+pub struct Weight {
+    /// Index of the color key.
+    pub color: u32,
+    /// As in [`Weighed`](super::Weighed).
+    pub low: u32,
+    /// As in [`Weighed`](super::Weighed).
+    pub high: u32,
 }
 
 /// The weights of all pixels of a picture, by [`MatrixBuilder`].
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Matrix {
-    pub(crate) keys: Vec<VisibleKey>,
+pub struct Matrix {
+    /// What shows: each color key of each instance once, in order.
+    pub keys: Vec<VisibleKey>,
     /// By pixel: its first weight, and what does not depend on colors. One more at the end.
-    pub(crate) rows: Vec<[u32; 2]>,
-    pub(crate) weights: Vec<Weight>,
+    pub rows: Vec<[u32; 2]>,
+    /// The weights, pixel by pixel.
+    pub weights: Vec<Weight>,
 }
 
 /// What was collected of some rows of pixels: of all their samples, or of those of each of several
 /// steps.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Weights {
+pub struct Weights {
     size: [u32; 2],
     fixed: Vec<[f32; 2]>,
     weighed: Vec<Weighed>,
@@ -45,7 +50,7 @@ pub(crate) struct Weights {
 
 impl Weights {
     /// Of rows in which nothing shows.
-    pub(crate) fn new(size: [u32; 2]) -> Self {
+    pub fn new(size: [u32; 2]) -> Self {
         Self {
             size,
             fixed: vec![[0.0; 2]; size[0] as usize * size[1] as usize],
@@ -54,7 +59,7 @@ impl Weights {
     }
 
     /// Adds the pixels of a tile whose upper left pixel is at `[left, top]`.
-    pub(crate) fn add(&mut self, [left, top]: [u32; 2], tile: &Collected) {
+    pub fn add(&mut self, [left, top]: [u32; 2], tile: &Collected) {
         let [width, height] = self.size;
         let tile_width = tile.size[0].max(1);
         let within = |pixel: u32| {
@@ -77,7 +82,7 @@ impl Weights {
 
 /// Puts a matrix together from the top of the picture to its bottom.
 #[derive(Default)]
-pub(crate) struct MatrixBuilder {
+pub struct MatrixBuilder {
     numbers: Numbers,
     rows: Vec<[u32; 2]>,
     weights: Vec<Weight>,
@@ -86,7 +91,7 @@ pub(crate) struct MatrixBuilder {
 impl MatrixBuilder {
     /// Adds the next rows of pixels. `steps`: how often each pixel was collected; the mean of the steps
     /// is taken.
-    pub(crate) fn add(&mut self, collected: &Weights, steps: u32) {
+    pub fn add(&mut self, collected: &Weights, steps: u32) {
         let numbered = collected.weighed.iter().map(|one| {
             let key = VisibleKey {
                 instance: one.instance,
@@ -120,7 +125,7 @@ impl MatrixBuilder {
     }
 
     /// The matrix of all rows that were added. Keys are in order, and so are the weights of a pixel.
-    pub(crate) fn finish(mut self) -> Matrix {
+    pub fn finish(mut self) -> Matrix {
         self.rows.push([self.weights.len() as u32, 0]);
         let (keys, new) = self.numbers.sorted();
         for weight in &mut self.weights {
@@ -171,7 +176,7 @@ impl Numbers {
 }
 
 /// Two numbers from 0 to 2, as WGSL's `pack2x16unorm` packs their halves.
-fn packed(pair: [f32; 2]) -> u32 {
+pub fn packed(pair: [f32; 2]) -> u32 {
     let [low, high] = pair.map(|n| (n.clamp(0.0, 2.0) * 0.5 * 65535.0 + 0.5) as u32);
     low | (high << 16)
 }

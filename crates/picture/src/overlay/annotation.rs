@@ -1,10 +1,10 @@
 //! Lines with labels over a picture, such as dimensions.
 
-use crate::output::image::Image;
-use crate::output::overlay::{ink, line_height};
-use crate::output::stroke::stroke;
-use crate::output::text::Text;
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
+use crate::image::Image;
+use crate::overlay::corners::{ink, line_height};
+use crate::overlay::stroke::stroke;
+use crate::overlay::text::Text;
 
 /// A line over a picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use ab_glyph::{Font, FontRef, Glyph, ScaleFont, point};
 
-use crate::output::image::Image;
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
+use crate::image::Image;
 
 /// A font at a size.
 pub(crate) struct Text {

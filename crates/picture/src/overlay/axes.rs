@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use crate::output::image::Image;
-use crate::output::stroke::stroke;
-use crate::output::text::Text;
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
+use crate::image::Image;
+use crate::overlay::stroke::stroke;
+use crate::overlay::text::Text;
 use crate::view::camera::Camera;
 
 /// The axes and their colors, which the window's have, too.

@@ -1,8 +1,7 @@
 //! How a picture is drawn: its view, size, samples, light and occlusion.
 
-use crate::gpu::device::Gpu;
-use crate::scene::color::Rgb;
-use crate::shading::shade::Look;
+use crate::color::Rgb;
+use crate::look::Look;
 use crate::view::camera::Camera;
 
 /// How a picture is drawn.
@@ -46,7 +45,7 @@ pub enum Occlusion {
 impl Occlusion {
     /// Radius of occlusion in a picture of this height (sub-pixels): µm, and the most sub-pixels.
     /// It does not depend on tiles, so that they fit together.
-    pub(crate) fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
+    pub fn reach(self, camera: &Camera, height: u32) -> Option<(f32, f32)> {
         let height = f64::from(height);
         let sub_pixel = camera.pixel_at_target(height);
         let most = (0.09 * height).min(MAX_MARGIN).ceil();
@@ -91,19 +90,14 @@ impl PictureOptions {
         most.unwrap_or(1)
     }
 
-    /// Number of sub-pixels along a pixel's side.
-    pub fn sub_pixels(&self, gpu: &Gpu) -> u32 {
-        let in_each = f64::from(samples_in_sub_pixel(gpu, self.samples_taken()));
-        ((f64::from(self.samples_taken()) / in_each).sqrt() as u32).max(1)
+    /// Number of sub-pixels along a pixel's side, of which each has so many samples.
+    pub fn sub_pixels(&self, in_each: u32) -> u32 {
+        let sub_pixels = f64::from(self.samples_taken()) / f64::from(in_each);
+        (sub_pixels.sqrt() as u32).max(1)
     }
-}
 
-/// Number of samples of a sub-pixel: four; or one if a pixel has only one sample, and on OpenGL,
-/// for which naga 30 translates sample masks wrongly.
-pub(crate) fn samples_in_sub_pixel(gpu: &Gpu, samples: u32) -> u32 {
-    if samples == 1 || gpu.adapter.backend == "gl" {
-        1
-    } else {
-        4
+    /// Number of samples of a sub-pixel: four, or one if a pixel has only one sample.
+    pub fn samples_in_sub_pixel(&self) -> u32 {
+        if self.samples_taken() == 1 { 1 } else { 4 }
     }
 }

@@ -7,10 +7,11 @@ use std::ops::Range;
 use glam::Vec3;
 
 /// Corners of all shapes, three to a triangle, and in the last component what they are relative to.
-pub(super) struct Shapes {
-    pub(super) corners: Vec<[f32; 4]>,
+pub struct Shapes {
+    /// The corners.
+    pub corners: Vec<[f32; 4]>,
     /// By shape, the simplest first: its range of the corners. After those of spheres, those of contacts, as many.
-    pub(super) ranges: Vec<Range<u32>>,
+    pub ranges: Vec<Range<u32>>,
 }
 
 /// What a marker is drawn as.
@@ -43,15 +44,23 @@ const BOTTOM: f32 = 6.0;
 /// Triangles of a dome.
 const SIDES: usize = 8;
 /// Radius (sub-pixels) of a sphere from which on its disc shows, and from which on it is whole.
-pub(super) const GROWS: [f32; 2] = [6.0, 12.0];
-/// Radius of a disc and how far its sphere is lifted, in radii of the sphere.
-pub(super) const DISC: f32 = 2.0;
-pub(super) const LIFT: f32 = 0.9;
+pub const GROWS: [f32; 2] = [6.0, 12.0];
+/// Radius of a disc, in radii of its sphere.
+pub const DISC: f32 = 2.0;
+/// How far the sphere is lifted outwards, in its radii.
+pub const LIFT: f32 = 0.9;
 /// Half the thickness of a disc, in radii of the sphere.
 const HALF: f32 = 0.12;
 
+impl Default for Shapes {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Shapes {
-    pub(super) fn new() -> Self {
+    /// All of them.
+    pub fn new() -> Self {
         let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let square = [0, 1, 2, 0, 2, 3].map(|k: usize| [square[k][0], square[k][1], 1.0, FLAT]);
         let rim = |k: usize| {
@@ -94,7 +103,7 @@ impl Shapes {
     }
 
     /// The index of what is drawn for a marker of this radius (sub-pixels).
-    pub(super) fn of_radius(shape: MarkerShape, radius: f32) -> usize {
+    pub fn of_radius(shape: MarkerShape, radius: f32) -> usize {
         let level = FROM.iter().rposition(|&from| radius >= from).unwrap_or(0);
         match shape {
             MarkerShape::Point => 0,
@@ -104,7 +113,7 @@ impl Shapes {
     }
 
     /// Number of triangles of a shape.
-    pub(super) fn triangles(&self, shape: usize) -> usize {
+    pub fn triangles(&self, shape: usize) -> usize {
         self.ranges[shape].len() / 3
     }
 }

@@ -13,23 +13,24 @@ use neurotess_mesh::{Faces, SurfaceMesh, merge_identical};
 const CREASE: f32 = 0.643;
 
 /// A mesh of triangles with normals.
-pub(super) struct Lit {
+pub struct Lit {
     /// Positions and unit normals.
-    pub(super) vertices: Vec<[Vec3; 2]>,
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub vertices: Vec<[Vec3; 2]>,
+    /// Indices of three vertices each.
+    pub triangles: Vec<[u32; 3]>,
     /// Index of the first triangle that is half of a quad: its side across from its first corner is no edge.
-    pub(super) first_half: usize,
+    pub first_half: usize,
     /// Color keys of the vertices, if the mesh has any.
-    pub(super) keys: Vec<u32>,
+    pub keys: Vec<u32>,
 }
 
 impl Lit {
-    /// Triangles without an area are left out. `keys`: by vertex, or none; vertices at one place that differ in them stay
+    /// Of a mesh. Triangles without an area are left out. `keys`: by vertex, or none; vertices at one place that differ in them stay
     /// apart.
     ///
     /// # Panics
     /// If there are keys, but not one for each vertex.
-    pub(super) fn new(mut mesh: SurfaceMesh, keys: &[u32]) -> Self {
+    pub fn new(mut mesh: SurfaceMesh, keys: &[u32]) -> Self {
         assert!(keys.is_empty() || keys.len() == mesh.vertices.len());
         let given = (!keys.is_empty()).then(|| mesh.faces.clone());
         merge_identical(&mut mesh);

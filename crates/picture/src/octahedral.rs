@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 /// A unit vector as two signed 16-bit numbers: accurate to 0.005°.
-pub(super) fn pack_normal(normal: Vec3) -> u32 {
+pub fn pack_normal(normal: Vec3) -> u32 {
     let sum = normal.abs().element_sum().max(f32::MIN_POSITIVE);
     let (x, y) = (normal.x / sum, normal.y / sum);
     let sign = |value: f32| if value < 0.0 { -1.0 } else { 1.0 };

@@ -1,8 +1,8 @@
 //! Legends and scale bars, drawn as images to be blended over pictures.
 
-use crate::output::image::Image;
-use crate::output::text::Text;
-use crate::scene::color::Rgb;
+use crate::color::Rgb;
+use crate::image::Image;
+use crate::overlay::text::Text;
 
 /// What the colors of a picture mean.
 #[derive(Clone, Debug, PartialEq)]
@@ -295,7 +295,7 @@ fn disc(image: &mut Image, center: [f32; 2], radius: f32, color: Rgb) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::color::ColorMap;
+    use crate::color::ColorMap;
 
     #[test]
     fn lengths_are_round() {

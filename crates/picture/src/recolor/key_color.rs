@@ -1,19 +1,20 @@
 //! Colors of color keys: twin of `color_of` and `lack_of_contrast` in shade.wgsl.
 
-use crate::scene::color::{CATEGORY_BIT, ColorTable, linear, luminance};
-use crate::shading::shade::{HIGHLIGHTED, Light, Look};
+use crate::color::{CATEGORY_BIT, ColorTable, linear, luminance};
+use crate::look::{HIGHLIGHTED, Light, Look};
 
 use super::matrix::VisibleKey;
 
 /// What colors depend on besides the table.
-pub(super) struct Contrast {
+pub struct Contrast {
     /// Luminance of the background against which colors of the scale stand out by edges.
     background: Option<f32>,
     highlighted: [f32; 4],
 }
 
 impl Contrast {
-    pub(super) fn new(look: &Look) -> Self {
+    /// Of this look.
+    pub fn new(look: &Look) -> Self {
         let [r, g, b] = linear(look.highlighted.0);
         Self {
             // Plain colors have no edges.
@@ -27,7 +28,7 @@ impl Contrast {
 
     /// Linear color of a key, and how much of an edge it has. `linear`: the table's colors; `value`:
     /// instead of that in the table.
-    pub(super) fn key_color(
+    pub fn key_color(
         &self,
         table: &ColorTable,
         linear: &[[f32; 4]],
@@ -66,7 +67,7 @@ impl Contrast {
     }
 
     /// The color in this state.
-    pub(super) fn in_state(&self, [r, g, b, edge]: [f32; 4], state: u32) -> [f32; 4] {
+    pub fn in_state(&self, [r, g, b, edge]: [f32; 4], state: u32) -> [f32; 4] {
         if state & HIGHLIGHTED == 0 {
             return [r, g, b, edge];
         }

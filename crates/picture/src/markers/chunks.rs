@@ -8,7 +8,7 @@
 use glam::{DVec3, UVec3, Vec3};
 
 /// Markers of a chunk.
-pub(super) const CHUNK: usize = 2048;
+pub const CHUNK: usize = 2048;
 
 /// Up to [`CHUNK`] markers that lie together.
 #[derive(Clone, Copy, Debug, PartialEq)]
