@@ -5,12 +5,13 @@
 #import blocks.wgsl
 #import obscurance.wgsl
 
-// The first sample of a sub-pixel that nothing translucent covers, and the bytes of its depth; 0 if all are covered.
-// It stands for the sub-pixel: what is translucent neither is occluded nor occludes.
+// The first sample of a sub-pixel that something solid covers, and the bytes of its depth; 0 if there is none.
+// It stands for the sub-pixel: what is translucent neither is occluded nor occludes. Samples that nothing covers have
+// bytes of 0, which no depth has.
 fn solid_sample(p: vec2<i32>) -> vec2<u32> {
     for (var k = 0; k < i32(SAMPLES); k++) {
         let bytes = pack4x8unorm(textureLoad(depths, p, k));
-        if bytes != 0xffffffffu {
+        if bytes != 0u && bytes != 0xffffffffu {
             return vec2(u32(k), bytes);
         }
     }
