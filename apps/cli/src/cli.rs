@@ -7,15 +7,16 @@ use crate::commands::convert::{self, ConvertArgs};
 use crate::commands::diff::{self, DiffArgs};
 use crate::commands::info::{self, InfoArgs};
 use crate::commands::mesh::{self, MeshArgs};
+#[cfg(feature = "render")]
+use crate::commands::render::{self, RenderArgs};
 use crate::commands::synth::{self, SynthArgs};
 use crate::commands::tables::{self, NodesArgs, ReportArgs};
 #[cfg(feature = "view")]
 use crate::commands::view::{self, ViewArgs};
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 use crate::commands::{
     bench::{self, BenchArgs},
     html::{self, HtmlArgs},
-    render::{self, RenderArgs},
 };
 use crate::commands::{completions, man, version};
 use crate::report::{Common, Reporter, usage};
@@ -71,7 +72,7 @@ pub(crate) enum Command {
     #[cfg(feature = "render")]
     Render(Box<RenderArgs>),
     /// Write cells as one HTML page, to be sent: it opens without a server
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     Html(Box<HtmlArgs>),
     /// Open the window: look, pick, tune somata, save
     #[cfg(feature = "view")]
@@ -89,7 +90,7 @@ pub(crate) enum Command {
     /// Grow synthetic neurons, the same for the same seed on every machine
     Synth(SynthArgs),
     /// Benchmarks to repeat on one's own machine
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     Bench(Box<BenchArgs>),
     /// Print the completions of a shell
     Completions {
@@ -104,8 +105,8 @@ pub(crate) enum Command {
 }
 
 impl Cli {
-    /// Whether something may be drawn without a window.
-    #[cfg(feature = "render")]
+    /// Whether something may be drawn by an adapter without a window.
+    #[cfg(feature = "gpu")]
     pub(crate) fn draws(&self) -> bool {
         self.version || matches!(self.command, Some(Command::Render(_) | Command::Bench(_)))
     }
@@ -123,11 +124,11 @@ impl Cli {
             Some(Command::Diff(args)) => diff::run(args, reporter),
             #[cfg(feature = "render")]
             Some(Command::Render(args)) => render::run(args, reporter),
-            #[cfg(feature = "render")]
+            #[cfg(feature = "gpu")]
             Some(Command::Html(args)) => html::run(args, reporter),
             #[cfg(feature = "view")]
             Some(Command::View(args)) => view::run(args, reporter),
-            #[cfg(feature = "render")]
+            #[cfg(feature = "gpu")]
             Some(Command::Bench(args)) => bench::run(args, reporter),
             Some(Command::Nodes(args)) => tables::nodes(args, reporter),
             Some(Command::Report(args)) => tables::report(args, reporter),

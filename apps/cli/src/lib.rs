@@ -5,7 +5,7 @@
 mod cli;
 mod commands;
 pub mod embed;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 mod headless;
 mod interrupt;
 mod io;
@@ -48,7 +48,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 }
 
 fn run(cli: &Cli, reporter: &Reporter) -> anyhow::Result<()> {
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     if cli.draws() {
         headless::stay_away_from_windows();
     }

@@ -20,7 +20,7 @@ mod command;
 mod errors;
 mod json;
 mod options;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 mod page;
 #[cfg(feature = "render")]
 mod picture;
@@ -36,6 +36,7 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     work::note_process();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("CAN_RENDER", cfg!(feature = "render"))?;
+    module.add("CAN_PAGE", cfg!(feature = "gpu"))?;
     module.add_class::<cell::Cell>()?;
     module.add_class::<cell::Edits>()?;
     module.add_class::<surface::Recipe>()?;
@@ -46,7 +47,7 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<circuit::Report>()?;
     #[cfg(feature = "render")]
     picture::add_to(module)?;
-    #[cfg(feature = "render")]
+    #[cfg(feature = "gpu")]
     page::add_to(module)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(cell::allow_large, module)?)?;

@@ -1,7 +1,6 @@
 //! Pictures, and drawings that are drawn again and again.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::io::Write;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -11,9 +10,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 use neurotess::circuit::{NodeRef, TimeAxis};
 use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnNumbers, OwnSeries, OwnValues};
-use neurotess::render::color::{ColorMap, Rgb};
-use neurotess::render::{Camera, Gpu, Image, Lens, PngWriter};
-use neurotess_cli::embed::{self, DrawError, DrawingColors, DrawingInput, Picked};
+use neurotess::picture::color::{ColorMap, Rgb};
+use neurotess::picture::{Camera, Image, Lens, PngWriter};
+use neurotess_cli::embed::{self, Device, DrawError, DrawingColors, DrawingInput, Picked};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -33,47 +32,59 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// Devices by the adapter that was asked for. They are kept: opening one takes a tenth of a second.
-static DEVICES: Mutex<Option<HashMap<Option<String>, Arc<Gpu>>>> = Mutex::new(None);
+#[cfg(feature = "gpu")]
+static DEVICES: Mutex<Option<std::collections::HashMap<Option<String>, Arc<Device>>>> =
+    Mutex::new(None);
 
 /// Whether the process that imported the package has opened a device, or is about to.
 static OPENED: AtomicBool = AtomicBool::new(false);
 
 /// An error where a driver's threads and connections have stayed in the process that this one was forked from: whatever
 /// waits for them waits for ever.
-fn usable() -> Result<(), DrawError> {
+fn usable() -> Result<(), String> {
     match is_forked() && OPENED.load(Ordering::Relaxed) {
-        true => Err(DrawError::Failed(
+        true => Err(
             "this process was forked from one that has opened a graphics device, which is of no use here: start \
-             processes by multiprocessing.get_context(\"spawn\"), or draw only in the new ones"
+             processes by multiprocessing.get_context(\"spawn\"), draw only in the new ones, or with adapter=\"cpu\""
                 .into(),
-        )),
+        ),
         false => Ok(()),
     }
 }
 
-fn device(adapter: Option<String>) -> Result<Arc<Gpu>, DrawError> {
+/// Opens an adapter, or has it open already.
+#[cfg(feature = "gpu")]
+fn device(adapter: Option<&str>) -> Result<Arc<Device>, String> {
     usable()?;
     if !is_forked() {
         OPENED.store(true, Ordering::Relaxed);
     }
     let mut devices = DEVICES.lock().unwrap_or_else(PoisonError::into_inner);
-    let devices = devices.get_or_insert_with(HashMap::new);
-    if let Some(gpu) = devices.get(&adapter) {
+    let devices = devices.get_or_insert_with(std::collections::HashMap::new);
+    let name = adapter.map(str::to_owned);
+    if let Some(gpu) = devices.get(&name) {
         return Ok(Arc::clone(gpu));
     }
-    let gpu = Gpu::open(adapter.as_deref()).map_err(|e| DrawError::Failed(e.to_string()))?;
-    let gpu = Arc::new(gpu);
-    devices.insert(adapter, Arc::clone(&gpu));
+    let gpu = Arc::new(Device::open(adapter).map_err(|e| e.to_string())?);
+    devices.insert(name, Arc::clone(&gpu));
     Ok(gpu)
 }
 
-/// Cells on the device; nothing when it is closed.
-type Shared = Arc<Mutex<Option<(Arc<Gpu>, embed::Drawing)>>>;
+/// Opens no adapter: this build has none.
+#[cfg(not(feature = "gpu"))]
+fn device(_adapter: Option<&str>) -> Result<Arc<Device>, String> {
+    Err("this build draws by the processor alone: use adapter=\"cpu\", or none".into())
+}
 
-/// Cells on the graphics device.
+/// What is drawn; nothing when it is closed.
+type Shared = Arc<Mutex<Option<embed::Drawing>>>;
+
+/// Cells that are drawn again and again.
 #[pyclass(frozen, module = "neurotess._neurotess")]
 pub(crate) struct Drawing {
     shared: Shared,
+    /// Whether a graphics adapter draws.
+    by_adapter: bool,
     /// What there was to say.
     #[pyo3(get)]
     messages: Vec<String>,
@@ -208,6 +219,8 @@ impl Drawing {
         times: Option<Vec<f64>>,
         adapter: Option<String>,
     ) -> PyResult<Self> {
+        let named = adapter.map(|name| format!("--adapter={name}"));
+        let options: Vec<String> = options.into_iter().chain(named).collect();
         let (own, time) = own_numbers(values, series)?;
         let colors = DrawingColors {
             own,
@@ -218,7 +231,6 @@ impl Drawing {
         };
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
         let made = stoppable(py, None, &Stop::default(), move |stopped| {
-            let gpu = device(adapter)?;
             let named: Vec<_> = cells.iter().map(|c| (c.name.as_str(), &**c)).collect();
             let nodes = circuit.as_ref().and_then(|(_, nodes)| nodes.as_ref());
             let nodes: Option<Vec<NodeRef>> = nodes.map(|nodes| {
@@ -229,22 +241,20 @@ impl Drawing {
                 Some((path, _)) => DrawingInput::Circuit(path, nodes.as_deref()),
                 None => DrawingInput::Cells(&named),
             };
-            let (drawing, messages) = embed::Drawing::new(&gpu, input, options, colors, stopped)?;
-            Ok((gpu, drawing, messages))
+            embed::Drawing::new(&device, input, options, colors, stopped)
         })?;
-        let (gpu, drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
+        let (drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
         Ok(Self {
             pictures: drawing.pictures(),
-            shared: Arc::new(Mutex::new(Some((gpu, drawing)))),
+            by_adapter: drawing.by_adapter(),
+            shared: Arc::new(Mutex::new(Some(drawing))),
             messages,
         })
     }
 
     /// Draws one of the pictures that the options ask for.
     fn draw(&self, py: Python<'_>, picture: usize) -> PyResult<Py<PyArray3<u8>>> {
-        self.with(py, move |gpu, drawing, stopped| {
-            drawing.draw(gpu, picture, stopped)
-        })
+        self.with(py, move |drawing, stopped| drawing.draw(picture, stopped))
     }
 
     /// Draws from anywhere, with the colors of one of the pictures.
@@ -257,18 +267,18 @@ impl Drawing {
         samples: u32,
     ) -> PyResult<Py<PyArray3<u8>>> {
         let camera = camera(view)?;
-        self.with(py, move |gpu, drawing, stopped| {
-            drawing.draw_from(gpu, picture, camera, (size, samples), stopped)
+        self.with(py, move |drawing, stopped| {
+            drawing.draw_from(picture, camera, (size, samples), stopped)
         })
     }
 
     /// The camera of a picture.
     fn camera(&self, py: Python<'_>, picture: usize) -> PyResult<View> {
-        usable().map_err(|e| undrawn(py, &e))?;
+        self.usable(py)?;
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let drawing = shared.as_ref().ok_or_else(closed)?;
         let missing = || PyValueError::new_err("no such picture");
-        let camera = drawing.1.camera(picture).ok_or_else(missing)?;
+        let camera = drawing.camera(picture).ok_or_else(missing)?;
         let [_, up, _] = camera.axes();
         let (eye, target) = (camera.eye().to_array(), camera.target().to_array());
         let orthographic = camera.is_orthographic();
@@ -285,19 +295,19 @@ impl Drawing {
         reach: f64,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let camera = camera(view)?;
-        usable().map_err(|e| undrawn(py, &e))?;
+        self.usable(py)?;
         let shared = Arc::clone(&self.shared);
         let picked = released(py, None, move || {
             let shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
             let drawing = shared.as_ref()?;
-            drawing.1.pick(&camera, size, at, reach)
+            drawing.pick(&camera, size, at, reach)
         })?;
         picked.map(|picked| picked_dict(py, picked)).transpose()
     }
 
     /// Gives back the memory on the device. Nothing can be drawn afterwards.
     fn close(&self, py: Python<'_>) {
-        if usable().is_err() {
+        if self.is_lost() {
             return;
         }
         // A picture that is being drawn is waited for.
@@ -315,27 +325,39 @@ impl Drawing {
 impl Drop for Drawing {
     /// In a forked process a device is not given back: that would wait for its driver's threads.
     fn drop(&mut self) {
-        if usable().is_err() {
+        if self.is_lost() {
             std::mem::forget(Arc::clone(&self.shared));
         }
     }
 }
 
 impl Drawing {
+    /// Whether its device was opened by the process that this one was forked from.
+    fn is_lost(&self) -> bool {
+        self.by_adapter && usable().is_err()
+    }
+
+    fn usable(&self, py: Python<'_>) -> PyResult<()> {
+        match self.by_adapter {
+            true => usable().map_err(|e| errors::render(py, &e)),
+            false => Ok(()),
+        }
+    }
+
     /// Draws without the interpreter's lock; one picture at a time, which Ctrl-C stops.
     fn with(
         &self,
         py: Python<'_>,
-        draw: impl FnOnce(&Gpu, &mut embed::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
+        draw: impl FnOnce(&mut embed::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
         + Send
         + 'static,
     ) -> PyResult<Py<PyArray3<u8>>> {
-        usable().map_err(|e| undrawn(py, &e))?;
+        self.usable(py)?;
         let shared = Arc::clone(&self.shared);
         let drawn = stoppable(py, None, &Stop::default(), move |stopped| {
             let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
             let drawing = shared.as_mut();
-            drawing.map(|(gpu, drawing)| draw(gpu, drawing, stopped))
+            drawing.map(|drawing| draw(drawing, stopped))
         })?;
         let image = drawn.ok_or_else(closed)?.map_err(|e| undrawn(py, &e))?;
         let shape = (image.height as usize, image.width as usize, 4);

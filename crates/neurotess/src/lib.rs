@@ -67,6 +67,7 @@
 //! | [`generate`] | from a morphology to a coarse mesh | |
 //! | [`refine`] | from a coarse mesh to a surface | |
 //! | [`picture`] | what a picture is: cameras, colors, looks, legends | `render` |
+//! | [`raster`] | pictures by the processor | `render` |
 //! | [`render`] | pictures by graphics hardware | `gpu` |
 //! | [`coloring`] | what the colors of pictures tell | `render` |
 //! | [`web`] | cells as one HTML page | `gpu` |
@@ -93,6 +94,8 @@ pub use neurotess_output as output;
 #[cfg(feature = "render")]
 pub use neurotess_picture as picture;
 pub use neurotess_plot as plot;
+#[cfg(feature = "render")]
+pub use neurotess_raster as raster;
 pub use neurotess_recipe as recipe;
 #[cfg(feature = "render")]
 pub use neurotess_recipe::draw;

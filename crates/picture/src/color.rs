@@ -97,6 +97,43 @@ impl ColorTable {
         entries
     }
 
+    /// Linear color of a color key, and whether it is one of the scale. `linear`: that of [`ColorTable::linear`]; `value`: a
+    /// fraction of the scale or NaN, instead of that of the instance.
+    pub fn color(
+        &self,
+        linear: &[[f32; 4]],
+        color_key: u32,
+        instance: u32,
+        value: Option<f32>,
+    ) -> ([f32; 3], bool) {
+        let last_color = linear.len() - 1;
+        let rgb = |place: usize| {
+            let [r, g, b, _] = linear[place.min(last_color)];
+            [r, g, b]
+        };
+        let of_category = |category: u32| (rgb(self.scale.len() + category as usize), false);
+        if color_key & CATEGORY_BIT != 0 {
+            return of_category(color_key & !CATEGORY_BIT);
+        }
+        let valued = value.is_some() || self.values.instances() > 0;
+        let share = match valued {
+            false => color_key as f32 / CATEGORY_BIT as f32,
+            true => {
+                let known = value.or_else(|| self.values.value(instance, color_key));
+                match known.filter(|share| !share.is_nan()) {
+                    Some(share) => share.clamp(0.0, 1.0),
+                    None => return of_category(0),
+                }
+            }
+        };
+        let last = self.scale.len().max(1) - 1;
+        let place = share * last as f32;
+        let (low, high) = (place as usize, (place as usize + 1).min(last));
+        let (a, b) = (rgb(low), rgb(high));
+        let mixed = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * place.fract());
+        (mixed, true)
+    }
+
     /// The buffer that shaders look colors up in, and the number of colors. The colors come first,
     /// then the index of each instance's first values, then the values, four to an entry.
     pub fn entries(&self) -> (Vec<[f32; 4]>, u32) {

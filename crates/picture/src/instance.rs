@@ -1,5 +1,6 @@
 //! Instances of templates: what a scene is made of.
 
+use neurotess_mesh::CoarseMesh;
 use thiserror::Error;
 
 use crate::placement::Placement;
@@ -7,6 +8,18 @@ use crate::placement::Placement;
 /// Index of a template among those of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TemplateId(pub u32);
+
+/// A coarse mesh that instances show.
+#[derive(Clone, Copy, Debug)]
+pub struct Template<'t> {
+    /// The mesh.
+    pub mesh: &'t CoarseMesh,
+    /// A color key for each tracing point. Missing ones are 0.
+    pub color_keys: &'t [u32],
+    /// A level for each tracing point, for
+    /// [`LodCriterion::PerPoint`](neurotess_refine::LodCriterion::PerPoint). Missing ones are 1.
+    pub values: &'t [u8],
+}
 
 /// One neuron in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

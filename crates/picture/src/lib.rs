@@ -37,7 +37,7 @@ pub mod state {
 }
 
 pub use image::{Image, PngWriter};
-pub use instance::{Instance, SceneError, TemplateId, check_placement};
+pub use instance::{Instance, SceneError, Template, TemplateId, check_placement};
 pub use least_width::usual_least_width;
 pub use look::{Clip, HALF_WIDTH, KEY, Light, Look, edge_color};
 pub use markers::{Marker, MarkerSettings, MarkerShape};
@@ -45,7 +45,7 @@ pub use meshes::MeshLook;
 pub use options::{LARGEST, Occlusion, PictureOptions, SAMPLES, Viewpoint};
 pub use placement::Placement;
 pub use recolor::{KeyColors, VisibleKey};
-pub use refined::{AdaptiveSettings, CullView};
+pub use refined::{AdaptiveSettings, CullView, DEFAULT_BUDGET, MAX_BUDGET};
 pub use view::camera::{Camera, CameraError};
 pub use view::frame::{Frame, Tile};
 pub use view::framing::{DEFAULT_FOV, Side};

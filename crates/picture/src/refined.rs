@@ -74,3 +74,8 @@ impl AdaptiveSettings {
         }
     }
 }
+
+/// Triangles of a frame by default: so many a laptop draws smoothly.
+pub const DEFAULT_BUDGET: u32 = 100_000;
+/// Most triangles of a frame.
+pub const MAX_BUDGET: u32 = 1 << 23;

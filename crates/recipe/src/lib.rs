@@ -50,7 +50,7 @@ mod words;
 
 pub use cell_mesh::{CellMesh, mesh, mesh_from, mesh_watched};
 #[cfg(feature = "render")]
-pub use draw::{DrawError, DrawOptions, Picture, PictureSaveError, draw, draw_on};
+pub use draw::{DrawError, DrawOptions, Picture, PictureSaveError, draw};
 pub use error::{MeshError, OptionsError};
 pub use files::{
     CellFiles, FileOptions, FileSurface, PartFile, SaveError, SaveOptions, Saved, WrittenFiles,

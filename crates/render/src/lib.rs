@@ -65,10 +65,10 @@ pub use neurotess_picture::markers::{Marker, MarkerSettings, MarkerShape};
 pub use neurotess_picture::meshes::MeshLook;
 pub use neurotess_picture::recolor::{KeyColors, VisibleKey};
 pub use neurotess_picture::{
-    AdaptiveSettings, BoundingSphere, Camera, CameraError, Clip, CullView, DEFAULT_FOV, Frame,
-    Image, Instance, LARGEST, Lens, Light, Look, Occlusion, PictureOptions, PixelSize, Placement,
-    PngWriter, Projection, SceneError, Side, TemplateId, Tile, Viewpoint, Watch, bounds, color,
-    overlay, state, usual_least_width,
+    AdaptiveSettings, BoundingSphere, Camera, CameraError, Clip, CullView, DEFAULT_BUDGET,
+    DEFAULT_FOV, Frame, Image, Instance, LARGEST, Lens, Light, Look, MAX_BUDGET, Occlusion,
+    PictureOptions, PixelSize, Placement, PngWriter, Projection, SceneError, Side, Template,
+    TemplateId, Tile, Viewpoint, Watch, bounds, color, overlay, state, usual_least_width,
 };
 pub use output::meter::{FrameTime, Meter};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
@@ -76,12 +76,11 @@ pub use output::static_picture::StaticPicture;
 pub use output::still::{Cost, PictureError, StaticError, StillRenderer, render_still};
 pub use output::tiling::tiles;
 pub use scene::Scene;
-pub use scene::templates::{Template, Templates};
+pub use scene::templates::Templates;
 pub use sources::adaptive::Adaptive;
 pub use sources::adaptive::readback::FrameStats;
 pub use sources::budgeted::{
-    DEFAULT_BUDGET, Exploration, ExplorationError, ExplorationStats, MAX_BUDGET, Proxy,
-    StreamedTemplates,
+    Exploration, ExplorationError, ExplorationStats, Proxy, StreamedTemplates,
 };
 pub use sources::combined::Combined;
 pub use sources::markers::Markers;

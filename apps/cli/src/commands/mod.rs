@@ -1,12 +1,12 @@
 //! The commands.
 
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod convert;
 pub(crate) mod diff;
-#[cfg(feature = "render")]
+#[cfg(feature = "gpu")]
 pub(crate) mod html;
 pub(crate) mod info;
 pub(crate) mod man;

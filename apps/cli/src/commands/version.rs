@@ -6,8 +6,8 @@ use serde_json::json;
 use crate::io::morphologies::{MORPHOLOGIES, written};
 use crate::report::Reporter;
 
-/// The adapter that pictures would be drawn with, or why there is none.
-#[cfg(feature = "render")]
+/// The best graphics adapter, or why there is none: pictures need none.
+#[cfg(feature = "gpu")]
 fn adapter() -> Result<String, String> {
     match neurotess::render::Gpu::open(None) {
         Ok(gpu) => Ok(gpu.adapter.to_string()),
@@ -15,10 +15,10 @@ fn adapter() -> Result<String, String> {
     }
 }
 
-/// The reason why there is none in builds without pictures.
-#[cfg(not(feature = "render"))]
+/// The reason why there is none.
+#[cfg(not(feature = "gpu"))]
 fn adapter() -> Result<String, String> {
-    Err("this build draws no pictures: build it with the feature 'render'".into())
+    Err("this build draws by the processor alone: build it with the feature 'gpu'".into())
 }
 
 /// Prints the version; with -v also formats and features of this build.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use neurotess::circuit::SynapseSide;
-use neurotess::render::MarkerShape;
+use neurotess::picture::MarkerShape;
 
 use crate::report::usage;
 

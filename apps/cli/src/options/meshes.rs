@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use neurotess::render::color::Rgb;
+use neurotess::picture::color::Rgb;
 
 /// Which meshes, and how they look.
 #[derive(Args, Clone, Debug, Default)]

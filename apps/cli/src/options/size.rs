@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use neurotess::render::LARGEST;
+use neurotess::picture::LARGEST;
 
 /// `--size`
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,6 +10,7 @@ from ._live_view import Picked
 
 __all__ = [
     "__version__",
+    "CAN_PAGE",
     "CAN_RENDER",
     "Cell",
     "Edits",
@@ -30,6 +31,7 @@ __all__ = [
 ]
 
 __version__: str
+CAN_PAGE: bool
 CAN_RENDER: bool
 WIDGET: str
 

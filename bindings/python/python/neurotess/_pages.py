@@ -162,8 +162,8 @@ CONTENT = ("report", "time", "synapses", "synapse_side", "points", "marker_color
 
 def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Page:
     """The page with these options of `html`."""
-    if not _neurotess.CAN_RENDER:
-        raise RenderError("this build makes no pages: build it with the feature 'render'")
+    if not _neurotess.CAN_PAGE:
+        raise RenderError("this build makes no pages: build it with the feature 'gpu'")
     recipe = _options.recipe({name: options.get(name) for name in MESHED})
     given = {name: options.get(name) for name in LOOK}
     content = _content(what, {name: options.get(name) for name in CONTENT})

@@ -1,6 +1,6 @@
 //! Colors of color keys: twin of `color_of` and `lack_of_contrast` in shade.wgsl.
 
-use crate::color::{CATEGORY_BIT, ColorTable, linear, luminance};
+use crate::color::{ColorTable, linear, luminance};
 use crate::look::{HIGHLIGHTED, Light, Look};
 
 use super::matrix::VisibleKey;
@@ -35,35 +35,12 @@ impl Contrast {
         key: &VisibleKey,
         value: Option<f32>,
     ) -> [f32; 4] {
-        let named = key.color_key & !CATEGORY_BIT;
-        let color_of = |category: u32| {
-            let place = table.scale.len() + category as usize;
-            let [r, g, b, _] = linear[place.min(linear.len() - 1)];
-            [r, g, b, 0.0]
-        };
-        if key.color_key & CATEGORY_BIT != 0 {
-            return color_of(named);
-        }
-        let valued = value.is_some() || table.values.instances() > 0;
-        let share = match valued {
-            false => key.color_key as f32 / CATEGORY_BIT as f32,
-            true => {
-                let known = value.or_else(|| table.values.value(key.instance, key.color_key));
-                match known.filter(|share| !share.is_nan()) {
-                    Some(share) => share.clamp(0.0, 1.0),
-                    None => return color_of(0),
-                }
-            }
-        };
-        let last = table.scale.len().max(1) - 1;
-        let place = share * last as f32;
-        let (low, high) = (place as usize, (place as usize + 1).min(last));
-        let color = [0, 1, 2].map(|k| {
-            let (a, b) = (linear[low.min(linear.len() - 1)][k], linear[high][k]);
-            a + (b - a) * place.fract()
-        });
+        let (color, of_scale) = table.color(linear, key.color_key, key.instance, value);
         let [r, g, b] = color;
-        [r, g, b, self.lack_of_contrast(color)]
+        match of_scale {
+            true => [r, g, b, self.lack_of_contrast(color)],
+            false => [r, g, b, 0.0],
+        }
     }
 
     /// The color in this state.

@@ -5,13 +5,13 @@ mod picture;
 
 use itertools::Itertools;
 use neurotess_color::{Cell, Coloring, coloring};
-use neurotess_refine::LodCriterion;
-use neurotess_render::overlay::{MARGIN, Overlay, OverlayOptions};
-use neurotess_render::{
-    Adaptive, AdaptiveSettings, BoundingSphere, Camera, CameraError, DEFAULT_FOV, DeviceError, Gpu,
-    Image, Instance, Lens, PictureError, Scene, SceneError, Template, Templates, Viewpoint, bounds,
-    render_still,
+use neurotess_picture::overlay::{MARGIN, Overlay, OverlayOptions};
+use neurotess_picture::{
+    AdaptiveSettings, BoundingSphere, Camera, CameraError, DEFAULT_FOV, Image, Instance, Lens,
+    SceneError, Template, TemplateId, Viewpoint, Watch, bounds,
 };
+use neurotess_raster::{PictureError, Scene};
+use neurotess_refine::LodCriterion;
 
 use crate::CellMesh;
 pub use options::DrawOptions;
@@ -21,9 +21,6 @@ pub use picture::{Picture, PictureSaveError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
-    /// There is no graphics adapter, or it fails.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
     /// The camera is not valid.
     #[error(transparent)]
     Camera(#[from] CameraError),
@@ -35,27 +32,15 @@ pub enum DrawError {
     Empty,
 }
 
-/// Draws cells where they were traced, with a device of its own. `neurotess render` without options draws the same.
+/// Draws cells where they were traced, by the processor: no graphics driver is needed. `neurotess render` without options
+/// draws the same.
 ///
 /// The coarse mesh is refined as it is drawn, so that it is smooth whatever the levels of the surface; where a surface was
 /// merged with itself, the tubes show as they were.
 ///
 /// # Errors
-/// There is no cell, no adapter, or the device fails.
+/// There is no cell, or the camera is not valid.
 pub fn draw(cells: &[&CellMesh], options: &DrawOptions) -> Result<Picture, DrawError> {
-    let gpu = Gpu::open(options.adapter.as_deref())?;
-    draw_on(&gpu, cells, options)
-}
-
-/// [`draw`] on a device that is open: further pictures take a tenth of the time of the first.
-///
-/// # Errors
-/// There is no cell, or the device fails.
-pub fn draw_on(
-    gpu: &Gpu,
-    cells: &[&CellMesh],
-    options: &DrawOptions,
-) -> Result<Picture, DrawError> {
     if cells.is_empty() {
         return Err(DrawError::Empty);
     }
@@ -65,7 +50,7 @@ pub fn draw_on(
         .flat_map(|cell| bounds::traced(&cell.generated.mesh))
         .collect();
     let (overlay, camera) = framed(&coloring, options, cells.len(), &spheres)?;
-    let mut source = source(gpu, cells, &coloring, options)?;
+    let scene = scene(cells, &coloring, options)?;
     let view = Viewpoint {
         camera,
         near: camera.near(&spheres),
@@ -83,10 +68,9 @@ pub fn draw_on(
     };
     let picture = options.picture(cells.len());
     let table = &coloring.table;
-    match render_still(gpu, &mut source, &view, table, &picture, take) {
+    match neurotess_raster::draw(&scene, &view, table, &picture, &Watch::default(), take) {
         // Nothing takes the bands but memory, and nobody stops it.
         Ok(_) | Err(PictureError::Sink(_) | PictureError::Stopped) => {}
-        Err(PictureError::Device(e)) => return Err(e.into()),
     }
     let alpha = options.background.is_none();
     Ok(Picture { image, alpha })
@@ -133,33 +117,24 @@ fn framed(
     Ok((overlay, cameras.first().copied().unwrap_or(first)))
 }
 
-fn source(
-    gpu: &Gpu,
-    cells: &[&CellMesh],
-    coloring: &Coloring,
+fn scene<'a>(
+    cells: &[&'a CellMesh],
+    coloring: &'a Coloring,
     options: &DrawOptions,
-) -> Result<Adaptive, DrawError> {
+) -> Result<Scene<'a>, SceneError> {
     let colored = cells.iter().zip_eq(&coloring.color_keys);
-    let list: Vec<Template<'_>> = colored
+    let templates: Vec<Template<'a>> = colored
         .map(|(cell, color_keys)| Template {
             mesh: &cell.generated.mesh,
             color_keys,
             values: &[],
         })
         .collect();
-    let mut templates = Templates::new();
-    let ids = templates.add(gpu, &list)?;
-    let instances = ids.into_iter().map(Instance::new).collect();
-    let scene = Scene::new(templates, instances)?;
+    let ids = (0..templates.len()).map(|id| TemplateId(id as u32));
+    let instances = ids.map(Instance::new).collect();
     let settings = AdaptiveSettings {
         lod: LodCriterion::PixelError(options.pixels),
         ..AdaptiveSettings::default()
     };
-    let sub_pixels = gpu.sub_pixels(&options.picture(cells.len()));
-    let mut source = Adaptive::new(gpu, scene, settings, sub_pixels)?;
-    let all = cells
-        .iter()
-        .map(|cell| bounds::bounds(&cell.generated.mesh));
-    source.set_bounds(all.flatten().collect());
-    Ok(source)
+    Scene::new(templates, instances, settings)
 }

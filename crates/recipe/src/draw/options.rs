@@ -1,8 +1,8 @@
 //! Options of a picture.
 
 use neurotess_color::{ColorBy, ColorScheme, OwnColors};
-use neurotess_render::color::{ColorMap, Palette, Rgb};
-use neurotess_render::{Look, PictureOptions, Side};
+use neurotess_picture::color::{ColorMap, Palette, Rgb};
+use neurotess_picture::{Look, PictureOptions, Side};
 
 /// What a picture of cells shows, and how. The default is that of `neurotess render`.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +39,6 @@ pub struct DrawOptions {
     pub least_width: Option<f32>,
     /// Farthest that the surface may be from the level-64 one (pixels).
     pub pixels: f32,
-    /// The adapter to draw with, by a part of its name; none: what `NEUROTESS_ADAPTER` names, or the fastest.
-    pub adapter: Option<String>,
 }
 
 impl Default for DrawOptions {
@@ -62,7 +60,6 @@ impl Default for DrawOptions {
             axes: false,
             least_width: None,
             pixels: 0.25,
-            adapter: None,
         }
     }
 }

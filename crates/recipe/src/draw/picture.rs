@@ -4,7 +4,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use neurotess_output::{Existing, Output, OutputError};
-use neurotess_render::{Image, PngWriter};
+use neurotess_picture::{Image, PngWriter};
 
 /// A finished picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,11 @@
 
 use crate::gpu::device::Gpu;
 use crate::gpu::error::DeviceError;
-use neurotess_picture::{BoundingSphere, Instance, SceneError, TemplateId, check_placement};
+use neurotess_picture::{
+    BoundingSphere, Instance, SceneError, Template, TemplateId, check_placement,
+};
 
-use crate::scene::templates::{Template, Templates};
+use crate::scene::templates::Templates;
 
 /// Checked instances of templates that are resident on a device.
 #[derive(Debug, Default)]

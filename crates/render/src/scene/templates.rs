@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use neurotess_mesh::{CoarseMesh, Role};
-use neurotess_picture::TemplateId;
+use neurotess_picture::{Template, TemplateId};
 use neurotess_refine::{PartLayout, SHAPED_U32S, pack, sphere_around};
 use wgpu::util::DeviceExt;
 
@@ -64,18 +64,6 @@ impl Base {
         let shaped = (self.soma - self.shaped) / SHAPED_U32S as u32;
         (self.anchors - self.explicit_vertices) / EXPLICIT_VERTEX_U32S + 4 * shaped
     }
-}
-
-/// A coarse mesh to be uploaded.
-#[derive(Clone, Copy, Debug)]
-pub struct Template<'t> {
-    /// The mesh.
-    pub mesh: &'t CoarseMesh,
-    /// A color key for each tracing point. Missing ones are 0.
-    pub color_keys: &'t [u32],
-    /// A level for each tracing point, for
-    /// [`LodCriterion::PerPoint`](neurotess_refine::LodCriterion::PerPoint). Missing ones are 1.
-    pub values: &'t [u8],
 }
 
 /// The packed buffer of a page with its bind group.

@@ -1,13 +1,12 @@
 //! `neurotess render`: its options.
 
-use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, ValueEnum};
+use clap::{Args, ValueEnum};
 use neurotess::coloring::OwnColors;
-use neurotess::render::color::{ColorMap, Palette, Rgb};
-use neurotess::render::{Look, MAX_BUDGET};
+use neurotess::picture::color::{ColorMap, Palette, Rgb};
+use neurotess::picture::{Look, MAX_BUDGET};
 
 use super::palette::{PaletteArg, PaletteParser, SetColor};
 use super::times::{MOST, times};
@@ -265,7 +264,8 @@ pub(crate) struct RenderArgs {
 }
 
 /// The options alone.
-#[derive(Debug, Parser)]
+#[cfg(feature = "gpu")]
+#[derive(Debug, clap::Parser)]
 struct Alone {
     #[command(flatten)]
     args: RenderArgs,
@@ -273,10 +273,11 @@ struct Alone {
 
 impl RenderArgs {
     /// The usual options for these inputs.
+    #[cfg(feature = "gpu")]
     pub(crate) fn of(inputs: &[PathBuf]) -> Self {
-        let words = ["render", "-o", "-", "--"].map(OsString::from);
+        let words = ["render", "-o", "-", "--"].map(std::ffi::OsString::from);
         let inputs = inputs.iter().map(|input| input.clone().into_os_string());
-        let parsed = Alone::try_parse_from(words.into_iter().chain(inputs));
+        let parsed = <Alone as clap::Parser>::try_parse_from(words.into_iter().chain(inputs));
         parsed.expect("it needs inputs and an output only").args
     }
 

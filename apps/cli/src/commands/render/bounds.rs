@@ -1,7 +1,7 @@
 //! Bounding spheres of the scene.
 
-use neurotess::render::bounds::{bounds, merged, traced};
-use neurotess::render::{BoundingSphere, Placement};
+use neurotess::picture::bounds::{bounds, merged, traced};
+use neurotess::picture::{BoundingSphere, Placement};
 use rayon::prelude::*;
 
 use super::cells::{MANY, MeshedCell};

@@ -1,7 +1,7 @@
 //! The cameras that follow from the options.
 
-use neurotess::render::overlay::MARGIN;
-use neurotess::render::{BoundingSphere, Camera, CameraError, Lens, Side};
+use neurotess::picture::overlay::MARGIN;
+use neurotess::picture::{BoundingSphere, Camera, CameraError, Lens, Side};
 
 use super::args::{RenderArgs, ViewSide};
 use super::values::Fit;

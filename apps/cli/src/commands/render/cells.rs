@@ -11,9 +11,11 @@ use neurotess::formats::{self, ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions, Generated};
 use neurotess::mesh::CoarseMesh;
 use neurotess::morphology::Morphology;
+use neurotess::picture::BoundingSphere;
+use neurotess::picture::bounds::bounds;
 use neurotess::recipe::memory;
-use neurotess::render::bounds::bounds;
-use neurotess::render::{BoundingSphere, Proxy};
+#[cfg(feature = "gpu")]
+use neurotess::render::Proxy;
 
 use super::args::{LodMode, RenderArgs};
 use crate::io::batch::each;
@@ -30,6 +32,7 @@ pub(crate) struct MeshedCell {
     pub(crate) morphology: Morphology,
     pub(crate) mesh: CoarseMesh,
     /// What exploration draws, if it came with the mesh; all its color keys are 0.
+    #[cfg(feature = "gpu")]
     pub(crate) proxy: Option<Proxy>,
     /// Bounding spheres of the mesh, if only its tracing points are kept.
     pub(crate) bounds: Option<Vec<BoundingSphere>>,
@@ -134,10 +137,10 @@ fn cell(
     } = meshing;
     let Some(cache) = meshing.cache else {
         let cell = meshed(file, read.morphology, options, stopped)?;
-        let proxy = meshing.only_proxies().then(|| Proxy::new(&cell.mesh, &[]));
         return Ok(meshing.kept(MeshedCell {
             warnings: read.warnings,
-            proxy,
+            #[cfg(feature = "gpu")]
+            proxy: meshing.only_proxies().then(|| Proxy::new(&cell.mesh, &[])),
             ..cell
         }));
     };
@@ -145,12 +148,14 @@ fn cell(
     let (generated, key) = cache
         .mesh(&read.morphology, options, generate)
         .map_err(|e| Failure(format!("{file}: {e}")))?;
-    let proxy = meshing
-        .exploring
-        .then(|| cache.proxy(&key, &generated.mesh));
+    #[cfg(not(feature = "gpu"))]
+    let _ = key;
     Ok(meshing.kept(MeshedCell {
         warnings: read.warnings,
-        proxy,
+        #[cfg(feature = "gpu")]
+        proxy: meshing
+            .exploring
+            .then(|| cache.proxy(&key, &generated.mesh)),
         ..of_mesh(file, read.morphology, generated)
     }))
 }
@@ -192,6 +197,7 @@ fn of_mesh(file: String, morphology: Morphology, generated: Generated) -> Meshed
         is_empty: generated.mesh.patches.is_empty(),
         morphology,
         mesh: generated.mesh,
+        #[cfg(feature = "gpu")]
         proxy: None,
         bounds: None,
         warnings: Vec::new(),

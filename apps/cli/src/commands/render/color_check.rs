@@ -1,7 +1,7 @@
 //! Whether colors can be told apart, and whether those that were set are in the picture.
 
 use neurotess::coloring::{ClosestColors, ColorTarget, ColoredThing, Coloring, closest, kinds};
-use neurotess::render::color::Palette;
+use neurotess::picture::color::Palette;
 use serde::Serialize;
 
 use super::args::RenderArgs;

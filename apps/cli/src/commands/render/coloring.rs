@@ -9,9 +9,9 @@ use neurotess::coloring::{
 };
 use neurotess::generate::unused_kinds;
 use neurotess::morphology::NeuriteKind;
-use neurotess::render::VisibleKey;
-use neurotess::render::color::ColorTable;
-use neurotess::render::overlay::Legend;
+use neurotess::picture::VisibleKey;
+use neurotess::picture::color::ColorTable;
+use neurotess::picture::overlay::Legend;
 
 use super::args::{ColorBy, RenderArgs};
 use super::cells::MeshedCell;

@@ -4,10 +4,9 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use itertools::Itertools;
-use neurotess::render::overlay::{Overlay, OverlayOptions};
-use neurotess::render::{
-    BoundingSphere, Camera, Cost, Gpu, Image, Look, Occlusion, PictureOptions, PngWriter,
-    StillRenderer, Viewpoint,
+use neurotess::picture::overlay::{Overlay, OverlayOptions};
+use neurotess::picture::{
+    BoundingSphere, Camera, Image, Look, Occlusion, PictureOptions, PngWriter, Viewpoint,
 };
 
 use super::args::RenderArgs;
@@ -16,9 +15,9 @@ use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
+use super::painter::{self, Cost, Painter, SourceStats};
 use super::stats::{Stage, Stages, Stats};
 use super::values::Fit;
-use super::vertex_source::{PictureSource, SourceStats};
 use crate::io::output::{self, OutputError};
 use crate::report::{Progress, Reporter, count};
 
@@ -47,7 +46,6 @@ pub(super) fn overlay(
 }
 
 pub(super) fn draw(
-    gpu: &Gpu,
     job: &RenderJob<'_>,
     meshes: SceneMeshes,
     stages: &mut Stages,
@@ -63,6 +61,7 @@ pub(super) fn draw(
         files,
         ..
     } = *job;
+    let shown = job.shown();
     let options = picture_options(args, colored.least_width());
     if options.samples_taken() != args.samples {
         let taken = options.samples_taken();
@@ -71,51 +70,41 @@ pub(super) fn draw(
     if overlay.legend_left_out {
         reporter.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
-    let mut source = PictureSource::new(gpu, &options, job, meshes)?;
-    let mut renderer = StillRenderer::new();
+    let device = Painter::device(&painter::open, job)?;
+    stages.end(Stage::Adapter);
+    let mut painter = Painter::new(device, &options, job, meshes)?;
+    if painter.software && painter.is_adapter() {
+        let [name, _] = &painter.name;
+        reporter.note(&format!("drawn by the processor: {name}"));
+    }
     stages.end(Stage::Upload);
-    let mut film = FixedFilm::new(
-        gpu,
-        colored,
-        (cameras, around),
-        &options,
-        (&mut source, &mut renderer),
-    )?;
-    let mut stats = Stats::new(gpu, placements.len());
+    let mut film = FixedFilm::new(&mut painter, &shown, (cameras, around), &options)?;
+    let mut stats = Stats::new(&painter, placements.len());
     let mut counted = SourceStats::default();
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (number, (camera, file)) in cameras.iter().zip_eq(files).enumerate() {
-        let near = camera.near(around);
+        let view = Viewpoint {
+            camera: *camera,
+            near: camera.near(around),
+        };
         let legend = colored.legend(number);
         let overlay = overlay.again((!args.no_legend).then_some(&legend), camera);
         let cost = write(file, args, |take| {
             let mut lay = |top: u32, mut band: Image| {
                 overlay.lay_on(top, &mut band);
-                take(&band)
+                take(&band).map_err(anyhow::Error::from)
             };
             if let Some(film) = &mut film {
-                let (picture, cost) = film.picture(gpu, colored, number)?;
+                let (picture, cost) = film.picture(colored, number)?;
                 lay(0, picture)?;
                 return Ok(cost);
             }
             let (table, _) = colored.picture(number)?;
-            renderer
-                .render(
-                    gpu,
-                    &mut source.as_vertex_source(),
-                    &Viewpoint {
-                        camera: *camera,
-                        near,
-                    },
-                    &table,
-                    &options,
-                    lay,
-                )
-                .map_err(|e| anyhow::anyhow!("{e}"))
+            painter.draw(&shown, &view, &table, &options, &mut lay)
         })?;
         // Every picture of a film shows the same surface.
         if film.is_none() || number == 0 {
-            counted = source.stats(gpu, camera, near, &options)?;
+            counted = painter.stats(&view, &options)?;
         }
         stats.add(&cost, counted.clone());
         stats.film = film.as_ref().map(FixedFilm::stats);

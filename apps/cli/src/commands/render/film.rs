@@ -3,18 +3,15 @@
 use std::time::Instant;
 
 use neurotess::coloring::Film;
-use neurotess::render::{
-    BoundingSphere, Camera, Cost, Gpu, Image, KeyColors, PictureOptions, StaticError,
-    StaticPicture, StillRenderer, Viewpoint, tiles,
-};
+use neurotess::picture::{BoundingSphere, Camera, Image, KeyColors, PictureOptions, Viewpoint};
 
 use super::coloring::PictureColors;
-use super::vertex_source::PictureSource;
+use super::painter::{Cost, Painter, Recolored, Shown};
 
 /// A film, and what its next picture costs besides being colored.
 pub(super) struct FixedFilm {
     film: Film,
-    picture: StaticPicture,
+    picture: Recolored,
     cost: Cost,
 }
 
@@ -30,13 +27,12 @@ pub(super) struct FilmStats {
 impl FixedFilm {
     /// Draws the picture; none if the pictures must be drawn one by one. `cameras`: of all pictures.
     pub(super) fn new(
-        gpu: &Gpu,
-        colored: &PictureColors,
-        cameras: (&[Camera], &[BoundingSphere]),
+        painter: &mut Painter,
+        shown: &Shown<'_>,
+        (cameras, spheres): (&[Camera], &[BoundingSphere]),
         options: &PictureOptions,
-        (source, renderer): (&mut PictureSource, &mut StillRenderer),
     ) -> anyhow::Result<Option<Self>> {
-        let (cameras, spheres) = cameras;
+        let colored = shown.colored;
         let fixed = cameras.windows(2).all(|pair| pair[0] == pair[1]);
         let Some(camera) = cameras.first().filter(|_| fixed) else {
             return Ok(None);
@@ -50,13 +46,8 @@ impl FixedFilm {
             near: camera.near(spheres),
         };
         let (table, _) = colored.picture(0)?;
-        let mut source = source.as_vertex_source();
-        let tiles = tiles(gpu, &source, &view, options);
-        let made = renderer.render_static(gpu, &mut source, &view, &table, options);
-        let picture = match made {
-            Ok(picture) => picture,
-            Err(StaticError::Wireframe | StaticError::Source) => return Ok(None),
-            Err(e) => anyhow::bail!("{e}"),
+        let Some((picture, tiles)) = painter.draw_static(shown, &view, &table, options)? else {
+            return Ok(None);
         };
         let Some(film) = colored.film(picture.keys()) else {
             return Ok(None);
@@ -76,21 +67,16 @@ impl FixedFilm {
     /// The picture of a number.
     pub(super) fn picture(
         &mut self,
-        gpu: &Gpu,
         colored: &PictureColors,
         number: usize,
     ) -> anyhow::Result<(Image, Cost)> {
         let clock = Instant::now();
         let values = colored.film_values(&self.film, number)?;
-        self.picture.recolor(
-            gpu,
-            &KeyColors {
-                table: &colored.coloring.table,
-                states: &[],
-                values: Some(&values),
-            },
-        )?;
-        let image = self.picture.image(gpu)?;
+        let image = self.picture.image(&KeyColors {
+            table: &colored.coloring.table,
+            states: &[],
+            values: Some(&values),
+        })?;
         let mut cost = self.cost.clone();
         // The first picture took the time to draw it.
         cost.cpu_ms += clock.elapsed().as_secs_f64() * 1e3;
@@ -99,12 +85,12 @@ impl FixedFilm {
     }
 
     pub(super) fn stats(&self) -> FilmStats {
-        let picture = &self.picture;
+        let (weights, bytes) = self.picture.size();
         FilmStats {
-            visible_keys: picture.keys().len(),
+            visible_keys: self.picture.keys().len(),
             compartments_read: self.film.compartments(),
-            weights: picture.weights(),
-            bytes: picture.bytes(),
+            weights,
+            bytes,
         }
     }
 }

@@ -10,12 +10,12 @@ use glam::{DVec2, DVec3};
 use neurotess::circuit::NodeRef;
 use neurotess::coloring::{MarkerSet, MeshValues, OwnNumbers};
 use neurotess::morphology::{Morphology, SectionId, shape};
-use neurotess::recipe::memory::{self, TooLittleMemory};
-use neurotess::render::color::Rgb;
-use neurotess::render::overlay::Overlay;
-use neurotess::render::{
-    BoundingSphere, Camera, Gpu, Image, PictureOptions, Placement, StillRenderer, Viewpoint, Watch,
+use neurotess::picture::color::Rgb;
+use neurotess::picture::overlay::Overlay;
+use neurotess::picture::{
+    BoundingSphere, Camera, Image, PictureOptions, Placement, Viewpoint, Watch,
 };
+use neurotess::recipe::memory::{self, TooLittleMemory};
 use rayon::prelude::*;
 
 use super::args::RenderArgs;
@@ -25,8 +25,8 @@ use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
+use super::painter::{self, Open, Painter, Shown};
 use super::scene::RenderScene;
-use super::vertex_source::{self, PictureSource};
 use super::{bounds, cameras, checks, coloring, draw, scene};
 use crate::options::size::Size;
 use crate::report::{self, Common, Entry, Failed, Reporter, Usage};
@@ -75,7 +75,7 @@ pub enum DrawError {
     Memory(String),
 }
 
-/// Cells on the device, to be drawn once or often.
+/// Cells to be drawn once or often.
 pub struct Drawing {
     args: Box<RenderArgs>,
     cells: Vec<MeshedCell>,
@@ -88,8 +88,7 @@ pub struct Drawing {
     colored: PictureColors,
     cameras: Vec<Camera>,
     overlay: Overlay,
-    source: PictureSource,
-    renderer: StillRenderer,
+    painter: Painter,
     /// Of a series of times from a fixed camera: drawn with the first of its pictures.
     film: Option<FixedFilm>,
 }
@@ -112,13 +111,13 @@ pub struct Picked {
 }
 
 impl Drawing {
-    /// Reads, meshes and uploads what is to be drawn; `colors` go before those of the options. Returns what there is
-    /// to say about it, too. Ends soon after another thread sets `stopped`.
+    /// Reads and meshes what is to be drawn, and uploads it if an adapter draws, which `open` opens; `colors` go before
+    /// those of the options. Returns what there is to say about it, too. Ends soon after another thread sets `stopped`.
     ///
     /// # Errors
     /// Wrong options, inputs that fail, or a device that does.
     pub fn new(
-        gpu: &Gpu,
+        open: Open<'_>,
         input: DrawingInput<'_>,
         options: impl IntoIterator<Item = String>,
         colors: DrawingColors,
@@ -136,7 +135,7 @@ impl Drawing {
         let args = Box::new(args);
         let reporter = Reporter::recording(common, stopped);
         let made = Self::made(
-            gpu,
+            open,
             input,
             args,
             (colors.own, colors.meshes.as_ref()),
@@ -155,13 +154,13 @@ impl Drawing {
     }
 
     fn made(
-        gpu: &Gpu,
+        open: Open<'_>,
         input: DrawingInput<'_>,
         args: Box<RenderArgs>,
         (own, of_meshes): (Option<OwnNumbers>, Option<&MeshValues>),
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
-        vertex_source::mode(&args)?;
+        painter::mode(&args)?;
         if own.is_none() && of_meshes.is_none() {
             checks::check_value(&args)?;
         }
@@ -210,13 +209,15 @@ impl Drawing {
             placements: &placements,
             colored: &colored,
             cameras: &cameras,
+            #[cfg(feature = "gpu")]
             spheres: &spheres,
             around: &around,
             overlay: &overlay,
             files: &[],
         };
         let options = draw::picture_options(&args, colored.least_width());
-        let source = PictureSource::new(gpu, &options, &job, meshes)?;
+        let device = Painter::device(open, &job)?;
+        let painter = Painter::new(device, &options, &job, meshes)?;
         Ok(Self {
             args,
             cells,
@@ -227,10 +228,14 @@ impl Drawing {
             colored,
             cameras,
             overlay,
-            source,
-            renderer: StillRenderer::new(),
+            painter,
             film: None,
         })
+    }
+
+    /// Whether a graphics adapter draws, not the processor.
+    pub fn by_adapter(&self) -> bool {
+        self.painter.is_adapter()
     }
 
     /// Number of pictures that the options ask for.
@@ -247,34 +252,31 @@ impl Drawing {
     ///
     /// # Errors
     /// The device or a report fails, or the picture was stopped.
-    pub fn draw(
-        &mut self,
-        gpu: &Gpu,
-        picture: usize,
-        stopped: &Arc<AtomicBool>,
-    ) -> Result<Image, DrawError> {
-        self.stoppable(stopped, |drawing| drawing.numbered(gpu, picture))
+    pub fn draw(&mut self, picture: usize, stopped: &Arc<AtomicBool>) -> Result<Image, DrawError> {
+        self.stoppable(stopped, |drawing| drawing.numbered(picture))
     }
 
-    fn numbered(&mut self, gpu: &Gpu, picture: usize) -> Result<Image, DrawError> {
+    fn numbered(&mut self, picture: usize) -> Result<Image, DrawError> {
         let Some(camera) = self.camera(picture) else {
             return Err(DrawError::Failed("there is no such picture".into()));
         };
         let options = draw::picture_options(&self.args, self.colored.least_width());
         if self.film.is_none() {
-            let drawn = FixedFilm::new(
-                gpu,
-                &self.colored,
-                (&self.cameras, &self.around),
-                &options,
-                (&mut self.source, &mut self.renderer),
-            );
+            let cells: Vec<&MeshedCell> = self.cells.iter().collect();
+            let shown = Shown {
+                args: &self.args,
+                cells: &cells,
+                placements: &self.placements,
+                colored: &self.colored,
+            };
+            let cameras = (&self.cameras[..], &self.around[..]);
+            let drawn = FixedFilm::new(&mut self.painter, &shown, cameras, &options);
             self.film = drawn.map_err(|e| DrawError::Failed(report::told(&e)))?;
         }
         let Some(film) = &mut self.film else {
-            return self.drawn(gpu, picture, camera, &options);
+            return self.drawn(picture, camera, &options);
         };
-        let colored = film.picture(gpu, &self.colored, picture);
+        let colored = film.picture(&self.colored, picture);
         let (mut image, _) = colored.map_err(|e| DrawError::Failed(report::told(&e)))?;
         let legend = self.colored.legend(picture);
         let overlay = self
@@ -291,7 +293,6 @@ impl Drawing {
     /// The device or a report fails, or the picture was stopped.
     pub fn draw_from(
         &mut self,
-        gpu: &Gpu,
         picture: usize,
         camera: Camera,
         (size, samples): ([u32; 2], u32),
@@ -309,9 +310,7 @@ impl Drawing {
             samples,
             ..draw::picture_options(&self.args, self.colored.least_width())
         };
-        self.stoppable(stopped, |drawing| {
-            drawing.drawn(gpu, picture, camera, &options)
-        })
+        self.stoppable(stopped, |drawing| drawing.drawn(picture, camera, &options))
     }
 
     /// Draws with a renderer that another thread can stop.
@@ -320,21 +319,20 @@ impl Drawing {
         stopped: &Arc<AtomicBool>,
         draw: impl FnOnce(&mut Self) -> Result<Image, DrawError>,
     ) -> Result<Image, DrawError> {
-        self.renderer.set_watch(Watch {
+        self.painter.set_watch(Watch {
             stopped: Arc::clone(stopped),
             ..Watch::default()
         });
         let drawn = draw(self);
         if drawn.is_err() {
             // What was stopped in the middle of a tile has its buffers in use still.
-            self.renderer = StillRenderer::new();
+            self.painter.recover();
         }
         drawn
     }
 
     fn drawn(
         &mut self,
-        gpu: &Gpu,
         picture: usize,
         camera: Camera,
         options: &PictureOptions,
@@ -355,17 +353,23 @@ impl Drawing {
             pixels: pixels
                 .map_err(|e| DrawError::Memory(format!("{e}: choose a smaller size=")))?,
         };
-        let take = |top: u32, mut band: Image| {
+        let mut take = |top: u32, mut band: Image| {
             overlay.lay_on(top, &mut band);
             whole.pixels.extend_from_slice(&band.pixels);
-            Ok::<(), String>(())
+            Ok(())
         };
         let near = camera.near(&self.around);
         let view = Viewpoint { camera, near };
-        let mut source = self.source.as_vertex_source();
-        self.renderer
-            .render(gpu, &mut source, &view, &table, options, take)
-            .map_err(|e| failed(e.to_string()))?;
+        let cells: Vec<&MeshedCell> = self.cells.iter().collect();
+        let shown = Shown {
+            args: &self.args,
+            cells: &cells,
+            placements: &self.placements,
+            colored: &self.colored,
+        };
+        self.painter
+            .draw(&shown, &view, &table, options, &mut take)
+            .map_err(|e| failed(report::told(&e)))?;
         Ok(whole)
     }
 

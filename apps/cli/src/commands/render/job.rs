@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use neurotess::render::overlay::Overlay;
-use neurotess::render::{BoundingSphere, Camera, Placement};
+use neurotess::picture::overlay::Overlay;
+use neurotess::picture::{BoundingSphere, Camera, Placement};
 
 use super::args::RenderArgs;
 use super::cells::MeshedCell;
 use super::coloring::PictureColors;
+use super::painter::Shown;
 
 /// The scene, cameras and files of a run.
 pub(super) struct RenderJob<'a> {
@@ -17,9 +18,22 @@ pub(super) struct RenderJob<'a> {
     pub(super) colored: &'a PictureColors,
     pub(super) cameras: &'a [Camera],
     /// What cameras fit.
+    #[cfg(feature = "gpu")]
     pub(super) spheres: &'a [BoundingSphere],
     /// What holds everything, for near planes.
     pub(super) around: &'a [BoundingSphere],
     pub(super) overlay: &'a Overlay,
     pub(super) files: &'a [PathBuf],
+}
+
+impl<'a> RenderJob<'a> {
+    /// The cells that are drawn.
+    pub(super) fn shown(&self) -> Shown<'a> {
+        Shown {
+            args: self.args,
+            cells: self.cells,
+            placements: self.placements,
+            colored: self.colored,
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use neurotess::circuit::{Circuit, NodeRef, PointTable};
 use neurotess::coloring::{self, ColorScheme, MarkerSet, SynapseOptions};
-use neurotess::render::{Gpu, MarkerSettings, MarkerShape, Markers, PictureOptions};
+use neurotess::picture::{MarkerSettings, MarkerShape};
 
 use super::args::RenderArgs;
 use crate::options::markers::MarkerArgs;
@@ -66,25 +66,15 @@ pub(crate) fn read(
     Ok(Some(set))
 }
 
-/// Uploads markers.
-///
-/// # Errors
-/// They do not fit the device.
-pub(super) fn upload(
-    gpu: &Gpu,
-    args: &RenderArgs,
-    options: &PictureOptions,
-    set: &MarkerSet,
-    budget: Option<u32>,
-) -> anyhow::Result<Markers> {
+/// How they are drawn. `sub_pixels`: along a pixel's side; `budget`: of exploration (triangles).
+pub(super) fn settings(args: &RenderArgs, sub_pixels: u32, budget: Option<u32>) -> MarkerSettings {
     let usual = MarkerSettings::default();
-    let settings = MarkerSettings {
+    MarkerSettings {
         shape: args.markers.shape(),
         radius: 0.5 * args.markers.marker_size.unwrap_or(2.0 * usual.radius),
-        least: 0.5 * LEAST * f64::from(gpu.sub_pixels(options)),
+        least: 0.5 * LEAST * f64::from(sub_pixels),
         most_triangles: budget.map_or(usual.most_triangles, |budget| {
             (SHARE_OF_BUDGET * f64::from(budget)) as usize
         }),
-    };
-    Ok(Markers::new(gpu, &set.markers, settings)?)
+    }
 }

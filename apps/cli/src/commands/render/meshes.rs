@@ -1,13 +1,12 @@
 //! Meshes of a picture that are no cells.
 
-use std::sync::Arc;
-
 use itertools::Itertools;
 use neurotess::coloring::{MeshValues, mesh_color};
 use neurotess::mesh::{self, SurfaceMesh};
-use neurotess::render::bounds::surface_points;
-use neurotess::render::color::Rgb;
-use neurotess::render::{BoundingSphere, Gpu, MeshGeometry, MeshLook, Meshes};
+use neurotess::picture::bounds::surface_points;
+use neurotess::picture::color::Rgb;
+use neurotess::picture::{BoundingSphere, MeshLook};
+use neurotess::raster;
 
 use crate::io::meshes::named;
 use crate::options::meshes::{MeshArg, MeshArgs};
@@ -115,29 +114,32 @@ impl SceneMeshes {
             .flat_map(|mesh| mesh.points.iter().copied())
     }
 
-    /// Uploads them with these color keys; gives none if there are no meshes.
-    ///
-    /// # Errors
-    /// They do not fit the device.
-    pub(super) fn upload(self, gpu: &Gpu, keys: &[MeshKeys]) -> anyhow::Result<Option<Meshes>> {
-        if self.meshes.is_empty() {
-            return Ok(None);
-        }
-        let mut all = Vec::new();
-        for (SceneMesh { arg, surface, .. }, keys) in self.meshes.into_iter().zip_eq(keys) {
+    /// Each surface with the color keys of its vertices, if it has any, and its look.
+    pub(super) fn with_looks(
+        self,
+        keys: &[MeshKeys],
+    ) -> impl Iterator<Item = (SurfaceMesh, &[u32], MeshLook)> {
+        let keyed = self.meshes.into_iter().zip_eq(keys);
+        keyed.map(|(SceneMesh { arg, surface, .. }, keys)| {
             let (color_key, of_vertices) = match keys {
                 MeshKeys::Whole(key) => (*key, &[][..]),
                 MeshKeys::OfVertices(keys) => (0, &keys[..]),
             };
-            let geometry = MeshGeometry::with_keys(gpu, surface, of_vertices)?;
             let look = MeshLook {
                 color_key,
                 opacity: arg.opacity as f32,
                 edges: arg.edges,
                 scale: arg.scale,
             };
-            all.push((Arc::new(geometry), look));
-        }
-        Ok(Some(Meshes::new(gpu, all)))
+            (surface, of_vertices, look)
+        })
+    }
+
+    /// As the processor draws them.
+    pub(super) fn for_processor(self, keys: &[MeshKeys]) -> Vec<raster::SceneMesh> {
+        let looks = self.with_looks(keys);
+        looks
+            .map(|(surface, keys, look)| raster::SceneMesh::new(surface, keys, look))
+            .collect()
     }
 }

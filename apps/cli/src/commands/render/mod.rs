@@ -18,42 +18,47 @@ mod in_memory;
 mod job;
 pub(crate) mod markers;
 mod meshes;
+mod painter;
 mod palette;
 mod scene;
 mod session;
 mod stats;
 mod times;
 mod values;
-mod vertex_source;
 
 use std::io;
 
 use neurotess::coloring::MarkerSet;
 use neurotess::output::write_into;
-use neurotess::render::Gpu;
 
 use crate::io::output;
 use crate::report::{Entry, Reporter, usage};
-pub(crate) use args::{ColorBy, RenderArgs, color_maps, range};
+pub(crate) use args::RenderArgs;
 pub(crate) use cells::MeshedCell;
-pub(crate) use circuit_instances::CircuitInstances;
-pub(crate) use coloring::{by, stem, tell_unused_types};
 pub use in_memory::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};
 use job::RenderJob;
 use meshes::SceneMeshes;
+pub use painter::{Device, Open};
 pub use palette::palette;
-pub(crate) use palette::{PaletteArg, PaletteParser, SetColor};
 pub(crate) use scene::RenderScene;
-pub(crate) use scene::read as read_scene;
 use stats::{Stage, Stages};
-pub(crate) use times::times;
-pub(crate) use values::RgbArg;
+// What pages share.
+#[cfg(feature = "gpu")]
+pub(crate) use {
+    args::{ColorBy, color_maps, range},
+    circuit_instances::CircuitInstances,
+    coloring::{by, stem, tell_unused_types},
+    palette::{PaletteArg, PaletteParser, SetColor},
+    scene::read as read_scene,
+    times::times,
+    values::RgbArg,
+};
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
     let files = checks::files(args)?;
-    vertex_source::mode(args)?;
+    painter::mode(args)?;
     for file in files.iter().chain(&args.stats) {
         output::check(file, args.force)?;
     }
@@ -95,11 +100,6 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     spheres.extend(meshes.fitted());
     let cameras = cameras::cameras(args, &spheres)?;
     stages.end(Stage::Frame);
-    let gpu = Gpu::open(args.gpu.adapter.as_deref())?;
-    stages.end(Stage::Adapter);
-    if gpu.adapter.software {
-        reporter.note(&format!("drawn by the processor: {}", gpu.adapter));
-    }
     let (overlay, cameras) = draw::overlay(args, &colored, cameras, &spheres);
     let job = RenderJob {
         args,
@@ -107,13 +107,14 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
         placements: &placements,
         colored: &colored,
         cameras: &cameras,
+        #[cfg(feature = "gpu")]
         spheres: &spheres,
         around: &around,
         overlay: &overlay,
         files: &files,
     };
     stages.end(Stage::Frame);
-    let mut stats = draw::draw(&gpu, &job, meshes, &mut stages, reporter)?;
+    let mut stats = draw::draw(&job, meshes, &mut stages, reporter)?;
     stages.end(Stage::Draw);
     stats.took(stages);
     stats.cache = cache.map(Into::into);

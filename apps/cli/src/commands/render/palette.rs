@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use neurotess::coloring::PaletteFile;
 use neurotess::formats::read_regular;
-use neurotess::render::color::{Palette, Rgb};
+use neurotess::picture::color::{Palette, Rgb};
 
 use super::values::RgbArg;
 

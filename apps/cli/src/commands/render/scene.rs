@@ -7,7 +7,7 @@ use itertools::Itertools;
 use neurotess::cache::{Cache, Summary};
 use neurotess::circuit::{Compartment, Instance, soma_center};
 use neurotess::coloring::cuts;
-use neurotess::render::Placement;
+use neurotess::picture::Placement;
 
 use super::args::RenderArgs;
 use super::cells::{self, MeshedCell};

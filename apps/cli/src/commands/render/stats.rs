@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use neurotess::cache::Summary;
-use neurotess::render::{Cost, Gpu};
 use serde::Serialize;
 
 use super::cells::MeshedCell;
 use super::color_check::ColorStats;
 use super::film::FilmStats;
-use super::vertex_source::SourceStats;
+use super::painter::{Cost, Painter, SourceStats};
 use crate::report::{Entry, Failed};
 
 /// The documented JSON object; times are those of the last picture.
@@ -107,29 +106,29 @@ impl Stages {
 
 /// What `--lod exploration` drew and what it left out, in triangles.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct BudgetStats {
-    budget: u64,
-    wanted: u64,
+pub(crate) struct BudgetStats {
+    pub(crate) budget: u64,
+    pub(crate) wanted: u64,
     /// Left out, or drawn more coarsely than within half a pixel.
-    left_out: u64,
+    pub(crate) left_out: u64,
     /// Whether `wanted` and `left_out` may be more: in the largest scenes, not everything is asked.
-    at_least: bool,
-    neurons_in_picture: u64,
+    pub(crate) at_least: bool,
+    pub(crate) neurons_in_picture: u64,
     /// If not all tracings fit the adapter's memory.
-    streamed: Option<StreamStats>,
+    pub(crate) streamed: Option<StreamStats>,
 }
 
 /// Tracings of which the adapter's memory does not hold all points at once.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct StreamStats {
-    tracings: usize,
+pub(crate) struct StreamStats {
+    pub(crate) tracings: usize,
     /// Those that are there more finely than the others.
-    finer: usize,
+    pub(crate) finer: usize,
     /// Those that are there with all their points.
-    whole: usize,
+    pub(crate) whole: usize,
     /// Those that might show more finely than there is room for.
-    coarser: usize,
-    uploaded_bytes: u64,
+    pub(crate) coarser: usize,
+    pub(crate) uploaded_bytes: u64,
 }
 
 /// Synapses and points of the scene, and how many of them the picture draws: they are left out where they lie
@@ -180,11 +179,12 @@ struct FrameTime {
 
 impl Stats {
     /// Statistics before the first picture.
-    pub(crate) fn new(gpu: &Gpu, neurons: usize) -> Self {
+    pub(crate) fn new(painter: &Painter, neurons: usize) -> Self {
+        let [adapter, backend] = painter.name.clone();
         Self {
-            adapter: gpu.adapter.name.clone(),
-            backend: gpu.adapter.backend.clone(),
-            software: gpu.adapter.software,
+            adapter,
+            backend,
+            software: painter.software,
             neurons,
             ..Self::default()
         }
@@ -201,20 +201,7 @@ impl Stats {
         self.level_histogram = made.levels;
         self.bytes_per_point = made.bytes_per_point;
         self.gpu_bytes = made.bytes;
-        self.exploration = made.exploration.map(|stats| BudgetStats {
-            budget: stats.budget,
-            wanted: stats.requested,
-            left_out: stats.requested - stats.triangles.min(stats.requested),
-            at_least: stats.at_least,
-            neurons_in_picture: stats.instances,
-            streamed: stats.streamed.map(|there| StreamStats {
-                tracings: there.templates,
-                finer: there.finer,
-                whole: there.whole,
-                coarser: there.coarser,
-                uploaded_bytes: there.uploaded,
-            }),
-        });
+        self.exploration = made.exploration;
         self.markers = made.markers.map(|[drawn, in_view, all]| MarkerStats {
             drawn,
             in_view,

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use glam::{DVec3, Vec3};
-use neurotess::render::Light;
-use neurotess::render::color::Rgb;
+use neurotess::picture::Light;
+use neurotess::picture::color::Rgb;
 
 /// Three numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]

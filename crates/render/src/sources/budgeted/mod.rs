@@ -55,6 +55,7 @@ use buffers::Buffers;
 use layout::{CELL, Eye, GpuInstance};
 use neurotess_picture::Instance;
 use neurotess_picture::bounds::shows;
+use neurotess_picture::{DEFAULT_BUDGET, MAX_BUDGET};
 use neurotess_picture::{Frame, Tile};
 use passes::{Groups, Passes, Resident, Size, Work, vertex_shader};
 use residents::Known;
@@ -66,10 +67,6 @@ pub use residents::ExplorationError;
 pub use stats::ExplorationStats;
 pub use streaming::StreamedTemplates;
 
-/// Triangles of a frame by default: so many a laptop draws smoothly.
-pub const DEFAULT_BUDGET: u32 = 100_000;
-/// Most triangles of a frame.
-pub const MAX_BUDGET: u32 = 1 << 23;
 /// Greatest distance (pixels) of what is drawn from the true surface.
 const ERROR: f32 = 0.5;
 

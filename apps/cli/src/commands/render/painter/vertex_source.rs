@@ -1,23 +1,25 @@
 //! The vertex source for `--lod`, and its statistics.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use itertools::Itertools;
+use neurotess::coloring::MarkerSet;
 use neurotess::refine::{Lod, LodCriterion, RefineOptions};
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, BoundingSphere, Camera, Combined, DEFAULT_BUDGET, Exploration,
-    ExplorationStats, Frame, Gpu, Instance, Markers, Meshes, PictureOptions, Placement, Prerefined,
-    PrerefinedSurface, Proxy, Scene, Template, Templates, VertexSource,
+    Adaptive, BoundingSphere, Camera, Combined, DEFAULT_BUDGET, Exploration, ExplorationStats,
+    Frame, Gpu, Instance, Markers, MeshGeometry, Meshes, PictureOptions, Placement, Prerefined,
+    PrerefinedSurface, Proxy, Scene, Templates, VertexSource,
 };
 use rayon::prelude::*;
 
-use super::args::{LodMode, RenderArgs};
-use super::bounds::covering;
-use super::cells::MeshedCell;
-use super::job::RenderJob;
-use super::markers;
-use super::meshes::SceneMeshes;
+use super::super::args::{LodMode, RenderArgs};
+use super::super::bounds::covering;
+use super::super::cells::MeshedCell;
+use super::super::job::RenderJob;
+use super::super::markers;
+use super::super::meshes::{MeshKeys, SceneMeshes};
+use super::super::stats::{BudgetStats, StreamStats};
+use super::{SourceStats, mode};
 use crate::report::usage;
 
 /// A vertex source for pictures, and markers and meshes beside it.
@@ -37,51 +39,6 @@ enum CellSource {
     Budgeted(Box<Exploration>),
 }
 
-/// What a vertex source draws and holds.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SourceStats {
-    pub(crate) patches: u64,
-    pub(crate) patches_drawn: u64,
-    pub(crate) vertices: u64,
-    pub(crate) triangles: u64,
-    pub(crate) levels: BTreeMap<u32, u64>,
-    pub(crate) bytes: BTreeMap<&'static str, u64>,
-    pub(crate) bytes_per_point: f64,
-    pub(crate) exploration: Option<ExplorationStats>,
-    /// Synapses and points that are drawn, those in view, and all.
-    pub(crate) markers: Option<[usize; 3]>,
-    /// Meshes that are no cells, and their triangles.
-    pub(crate) meshes: Option<[u64; 2]>,
-}
-
-/// The mode that follows from the options.
-///
-/// # Errors
-/// Wrong usage: a level where levels follow from the error.
-pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
-    let exploring = args.lod == Some(LodMode::Exploration);
-    if args.budget.is_some() && !exploring {
-        return usage("--budget is for --lod exploration");
-    }
-    if exploring && args.pixels.is_some() {
-        return usage("--lod exploration is within half a pixel: leave out --pixels");
-    }
-    match (args.lod, args.level) {
-        (Some(LodMode::Adaptive), Some(_)) => usage(
-            "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
-        ),
-        (Some(LodMode::Exploration | LodMode::Static), Some(_)) => {
-            usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
-        }
-        (Some(LodMode::Static), None) if args.pixels.is_some() => {
-            usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
-        }
-        (Some(mode), _) => Ok(mode),
-        (None, Some(_)) => Ok(LodMode::Homogeneous),
-        (None, None) => Ok(LodMode::Adaptive),
-    }
-}
-
 impl PictureSource {
     /// Uploads cells, markers and meshes.
     pub(crate) fn new(
@@ -96,11 +53,11 @@ impl PictureSource {
             _ => None,
         };
         let set = job.colored.markers.as_ref();
-        let markers = set.map(|set| markers::upload(gpu, job.args, options, set, budget));
+        let markers = set.map(|set| upload_markers(gpu, job.args, options, set, budget));
         Ok(Self {
             cells,
             markers: markers.transpose()?,
-            meshes: meshes.upload(gpu, &job.colored.mesh_keys)?,
+            meshes: upload_meshes(gpu, meshes, &job.colored.mesh_keys)?,
         })
     }
 
@@ -140,37 +97,18 @@ impl CellSource {
             args,
             cells,
             placements,
-            colored,
             ..
         } = *job;
-        let lod = match mode(args)? {
+        match mode(args)? {
             LodMode::Prerefined => return prerefined(gpu, job),
-            LodMode::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
-            LodMode::Adaptive => LodCriterion::PixelError(args.error() as f32),
-            LodMode::Static => LodCriterion::PixelError(0.5),
             LodMode::Exploration => return budgeted(gpu, options, job),
-        };
-        let list: Vec<Template<'_>> = cells
-            .iter()
-            .zip_eq(&colored.coloring.color_keys)
-            .map(|(cell, color_keys)| Template {
-                mesh: &cell.mesh,
-                color_keys,
-                values: &[],
-            })
-            .collect();
+            LodMode::Homogeneous | LodMode::Adaptive | LodMode::Static => {}
+        }
+        let shown = job.shown();
         let mut templates = Templates::new();
-        let ids = templates.add(gpu, &list)?;
-        let instances = placements.iter().map(|&(cell, placement)| Instance {
-            placement,
-            ..Instance::new(ids[cell])
-        });
-        let scene = Scene::new(templates, instances.collect())?;
-        let settings = AdaptiveSettings {
-            lod,
-            wireframe: args.wireframe,
-            ..AdaptiveSettings::default()
-        };
+        let ids = templates.add(gpu, &shown.templates())?;
+        let scene = Scene::new(templates, shown.instances(|cell| ids[cell]))?;
+        let settings = shown.settings()?;
         let mut source = Adaptive::new(gpu, scene, settings, gpu.sub_pixels(options))?;
         source.set_bounds(covering(cells, placements));
         Ok(Self::Adaptive(Box::new(source)))
@@ -218,7 +156,7 @@ impl CellSource {
                     triangles: stats.triangles,
                     bytes: source.bytes().into_iter().collect(),
                     bytes_per_point: source.bytes_per_point(),
-                    exploration: Some(stats),
+                    exploration: Some(budget_stats(&stats)),
                     ..SourceStats::default()
                 })
             }
@@ -262,9 +200,6 @@ fn budgeted(
     source.set_instances(gpu, instances.collect())?;
     Ok(CellSource::Budgeted(Box::new(source)))
 }
-
-/// Level if none is given.
-const DEFAULT_LEVEL: u32 = 4;
 
 fn prerefined(gpu: &Gpu, job: &RenderJob<'_>) -> anyhow::Result<CellSource> {
     let RenderJob {
@@ -341,4 +276,53 @@ fn resident(source: &Prerefined) -> SourceStats {
         bytes_per_point: sum as f64 / resident.points.max(1) as f64,
         ..SourceStats::default()
     }
+}
+
+fn budget_stats(stats: &ExplorationStats) -> BudgetStats {
+    BudgetStats {
+        budget: stats.budget,
+        wanted: stats.requested,
+        left_out: stats.requested - stats.triangles.min(stats.requested),
+        at_least: stats.at_least,
+        neurons_in_picture: stats.instances,
+        streamed: stats.streamed.map(|there| StreamStats {
+            tracings: there.templates,
+            finer: there.finer,
+            whole: there.whole,
+            coarser: there.coarser,
+            uploaded_bytes: there.uploaded,
+        }),
+    }
+}
+
+/// Uploads markers.
+///
+/// # Errors
+/// They do not fit the device.
+fn upload_markers(
+    gpu: &Gpu,
+    args: &RenderArgs,
+    options: &PictureOptions,
+    set: &MarkerSet,
+    budget: Option<u32>,
+) -> anyhow::Result<Markers> {
+    let settings = markers::settings(args, gpu.sub_pixels(options), budget);
+    Ok(Markers::new(gpu, &set.markers, settings)?)
+}
+
+/// Uploads meshes with these color keys; gives none if there are no meshes.
+///
+/// # Errors
+/// They do not fit the device.
+fn upload_meshes(
+    gpu: &Gpu,
+    meshes: SceneMeshes,
+    keys: &[MeshKeys],
+) -> anyhow::Result<Option<Meshes>> {
+    let mut all = Vec::new();
+    for (surface, keys, look) in meshes.with_looks(keys) {
+        let geometry = MeshGeometry::with_keys(gpu, surface, keys)?;
+        all.push((Arc::new(geometry), look));
+    }
+    Ok((!all.is_empty()).then(|| Meshes::new(gpu, all)))
 }

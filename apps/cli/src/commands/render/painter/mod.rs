@@ -1,0 +1,417 @@
+//! Who draws: the processor, or a graphics adapter.
+//!
+//! The processor draws where nothing names an adapter, but for scenes so large that a hardware adapter is worth opening,
+//! and for `--lod` of the window's exploration and of meshes that are refined beforehand, which only adapters have.
+
+#[cfg(feature = "gpu")]
+mod adapter;
+mod processor;
+#[cfg(feature = "gpu")]
+mod vertex_source;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use itertools::Itertools;
+use neurotess::picture::color::ColorTable;
+use neurotess::picture::{
+    AdaptiveSettings, Image, Instance, KeyColors, PictureOptions, Placement, Template, TemplateId,
+    Viewpoint, VisibleKey, Watch,
+};
+use neurotess::raster;
+use neurotess::refine::LodCriterion;
+
+use super::args::{LodMode, RenderArgs};
+use super::cells::MeshedCell;
+use super::coloring::PictureColors;
+use super::job::RenderJob;
+use super::meshes::SceneMeshes;
+use crate::report::usage;
+
+/// A graphics device.
+#[cfg(feature = "gpu")]
+pub type Device = neurotess::render::Gpu;
+
+/// A graphics device, of which this build has none.
+#[cfg(not(feature = "gpu"))]
+#[derive(Debug)]
+pub enum Device {}
+
+/// Opens graphics adapters by a part of their name.
+pub type Open<'a> = &'a dyn Fn(Option<&str>) -> Result<Arc<Device>, String>;
+
+/// Opens an adapter for one command.
+///
+/// # Errors
+/// There is none of this name.
+#[cfg(feature = "gpu")]
+pub(crate) fn open(name: Option<&str>) -> Result<Arc<Device>, String> {
+    Device::open(name).map(Arc::new).map_err(|e| e.to_string())
+}
+
+/// Opens no adapter: this build has none.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn open(name: Option<&str>) -> Result<Arc<Device>, String> {
+    let name = name.map_or(String::new(), |name| format!(" '{name}'"));
+    Err(format!(
+        "this build draws by the processor alone and knows no adapter{name}: build it with the feature 'gpu', or use \
+         --adapter cpu"
+    ))
+}
+
+/// The name by which the processor is asked for.
+pub(crate) const PROCESSOR: &str = "cpu";
+/// The variable that names what draws, where no option does.
+const VARIABLE: &str = "NEUROTESS_ADAPTER";
+/// Coarse patches of all pictures together from which on a hardware adapter is looked for: a core of the processor takes
+/// some seconds for them. Listing adapters takes 0.06 to 0.25 s, opening one and making its pipelines as long again.
+#[cfg(feature = "gpu")]
+const WORTH_AN_ADAPTER: u64 = 2_000_000;
+
+/// What draws the pictures of a job.
+pub(crate) struct Painter {
+    kind: Kind,
+    /// Its name, its interface, and whether it is a processor.
+    pub(crate) name: [String; 2],
+    pub(crate) software: bool,
+}
+
+enum Kind {
+    Processor(processor::Processor),
+    #[cfg(feature = "gpu")]
+    Adapter(Box<adapter::Adapter>),
+}
+
+/// The cells of a picture.
+#[derive(Clone, Copy)]
+pub(crate) struct Shown<'a> {
+    pub(crate) args: &'a RenderArgs,
+    pub(crate) cells: &'a [&'a MeshedCell],
+    pub(crate) placements: &'a [(usize, Placement)],
+    pub(crate) colored: &'a PictureColors,
+}
+
+/// The time and memory that a picture took.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Cost {
+    /// Milliseconds from the first command to the last byte.
+    pub(crate) cpu_ms: f64,
+    /// Milliseconds by pass, if a GPU drew and supports timestamps.
+    pub(crate) gpu_ms: Option<Vec<(&'static str, f64)>>,
+    /// Number of tiles, or of the processor's bands.
+    pub(crate) tiles: usize,
+    /// Bytes of what it is drawn into and finished in.
+    pub(crate) target_bytes: u64,
+}
+
+/// What a picture draws, and what it holds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SourceStats {
+    pub(crate) patches: u64,
+    pub(crate) patches_drawn: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) levels: BTreeMap<u32, u64>,
+    pub(crate) bytes: BTreeMap<&'static str, u64>,
+    pub(crate) bytes_per_point: f64,
+    pub(crate) exploration: Option<super::stats::BudgetStats>,
+    /// Synapses and points that are drawn, those in view, and all.
+    pub(crate) markers: Option<[usize; 3]>,
+    /// Meshes that are no cells, and their triangles.
+    pub(crate) meshes: Option<[u64; 2]>,
+}
+
+/// A picture that is colored anew.
+pub(crate) enum Recolored {
+    Processor(raster::StaticPicture),
+    #[cfg(feature = "gpu")]
+    Adapter(Arc<Device>, neurotess::render::StaticPicture),
+}
+
+/// Takes bands of pictures.
+pub(crate) type Take<'a> = &'a mut dyn FnMut(u32, Image) -> anyhow::Result<()>;
+
+/// Whether the processor is to draw: by the options, or by the variable.
+///
+/// # Errors
+/// Wrong usage: what only adapters draw.
+fn wanted(args: &RenderArgs) -> anyhow::Result<Wanted> {
+    let variable = || std::env::var(VARIABLE).ok().filter(|name| !name.is_empty());
+    let name = args.gpu.adapter.clone().or_else(variable);
+    let by_adapters = matches!(mode(args)?, LodMode::Exploration | LodMode::Prerefined);
+    match name {
+        Some(name) if name.eq_ignore_ascii_case(PROCESSOR) => match by_adapters {
+            true => usage(
+                "the processor draws no --lod exploration or prerefined: leave out --lod, or name another --adapter",
+            ),
+            false => Ok(Wanted::Processor),
+        },
+        Some(name) => Ok(Wanted::Adapter(Some(name))),
+        None if by_adapters => Ok(Wanted::Adapter(None)),
+        None => Ok(Wanted::Whatever),
+    }
+}
+
+enum Wanted {
+    Processor,
+    Adapter(Option<String>),
+    Whatever,
+}
+
+/// Opens the hardware adapter that is worth it for so many patches, if there is one.
+#[cfg(feature = "gpu")]
+fn worth(patches: u64, open: Open<'_>) -> Option<Arc<Device>> {
+    if patches < WORTH_AN_ADAPTER {
+        return None;
+    }
+    let adapters = neurotess::render::adapter::adapters();
+    let hardware = adapters.iter().any(|adapter| !adapter.software);
+    hardware.then(|| open(None).ok()).flatten()
+}
+
+#[cfg(not(feature = "gpu"))]
+fn worth(_patches: u64, _open: Open<'_>) -> Option<Arc<Device>> {
+    None
+}
+
+impl Painter {
+    /// The adapter that draws the pictures of a job; none if the processor does.
+    ///
+    /// # Errors
+    /// There is no adapter of that name, or none that draws what is asked for.
+    pub(crate) fn device(
+        open: Open<'_>,
+        job: &RenderJob<'_>,
+    ) -> anyhow::Result<Option<Arc<Device>>> {
+        Ok(match wanted(job.args)? {
+            Wanted::Processor => None,
+            Wanted::Adapter(name) => Some(open(name.as_deref()).map_err(anyhow::Error::msg)?),
+            Wanted::Whatever => worth(job.shown().patches() * job.cameras.len() as u64, open),
+        })
+    }
+
+    /// For the pictures of a job: cells, markers and `meshes` beside them.
+    pub(crate) fn new(
+        device: Option<Arc<Device>>,
+        options: &PictureOptions,
+        job: &RenderJob<'_>,
+        meshes: SceneMeshes,
+    ) -> anyhow::Result<Self> {
+        let Some(device) = device else {
+            let processor = processor::Processor::new(options, &job.shown(), meshes)?;
+            return Ok(Self {
+                kind: Kind::Processor(processor),
+                name: [PROCESSOR, "raster"].map(str::to_owned),
+                software: true,
+            });
+        };
+        Self::by_adapter(device, options, job, meshes)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn by_adapter(
+        gpu: Arc<Device>,
+        options: &PictureOptions,
+        job: &RenderJob<'_>,
+        meshes: SceneMeshes,
+    ) -> anyhow::Result<Self> {
+        let name = [gpu.adapter.name.clone(), gpu.adapter.backend.clone()];
+        let software = gpu.adapter.software;
+        let adapter = adapter::Adapter::new(gpu, options, job, meshes)?;
+        Ok(Self {
+            kind: Kind::Adapter(Box::new(adapter)),
+            name,
+            software,
+        })
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn by_adapter(
+        gpu: Arc<Device>,
+        _options: &PictureOptions,
+        _job: &RenderJob<'_>,
+        _meshes: SceneMeshes,
+    ) -> anyhow::Result<Self> {
+        match *gpu {}
+    }
+
+    /// Whether an adapter draws.
+    pub(crate) fn is_adapter(&self) -> bool {
+        !matches!(self.kind, Kind::Processor(_))
+    }
+
+    /// Sets what counts finished tiles and can stop pictures.
+    pub(crate) fn set_watch(&mut self, watch: Watch) {
+        match &mut self.kind {
+            Kind::Processor(processor) => processor.watch = watch,
+            #[cfg(feature = "gpu")]
+            Kind::Adapter(adapter) => adapter.renderer.set_watch(watch),
+        }
+    }
+
+    /// Gives up what a picture that was stopped has in use.
+    pub(crate) fn recover(&mut self) {
+        #[cfg(feature = "gpu")]
+        if let Kind::Adapter(adapter) = &mut self.kind {
+            adapter.renderer = neurotess::render::StillRenderer::new();
+        }
+    }
+
+    /// Draws a picture; `take` gets its bands from the top.
+    pub(crate) fn draw(
+        &mut self,
+        shown: &Shown<'_>,
+        view: &Viewpoint,
+        table: &ColorTable,
+        options: &PictureOptions,
+        take: Take<'_>,
+    ) -> anyhow::Result<Cost> {
+        match &mut self.kind {
+            Kind::Processor(processor) => processor.draw(shown, view, table, options, take),
+            #[cfg(feature = "gpu")]
+            Kind::Adapter(adapter) => adapter.draw(view, table, options, take),
+        }
+    }
+
+    /// Draws a picture that can be colored anew, and its number of tiles; none if this one cannot.
+    pub(crate) fn draw_static(
+        &mut self,
+        shown: &Shown<'_>,
+        view: &Viewpoint,
+        table: &ColorTable,
+        options: &PictureOptions,
+    ) -> anyhow::Result<Option<(Recolored, usize)>> {
+        match &mut self.kind {
+            Kind::Processor(processor) => processor.draw_static(shown, view, table, options),
+            #[cfg(feature = "gpu")]
+            Kind::Adapter(adapter) => adapter.draw_static(view, table, options),
+        }
+    }
+
+    /// What it drew, or draws, in a whole picture.
+    pub(crate) fn stats(
+        &mut self,
+        view: &Viewpoint,
+        options: &PictureOptions,
+    ) -> anyhow::Result<SourceStats> {
+        match &mut self.kind {
+            Kind::Processor(processor) => Ok(processor.stats(view, options)),
+            #[cfg(feature = "gpu")]
+            Kind::Adapter(adapter) => adapter.stats(view, options),
+        }
+    }
+}
+
+impl Recolored {
+    /// What shows.
+    pub(crate) fn keys(&self) -> &[VisibleKey] {
+        match self {
+            Self::Processor(picture) => picture.keys(),
+            #[cfg(feature = "gpu")]
+            Self::Adapter(_, picture) => picture.keys(),
+        }
+    }
+
+    /// Number of weights, and their bytes.
+    pub(crate) fn size(&self) -> (usize, u64) {
+        match self {
+            Self::Processor(picture) => (picture.weights(), picture.bytes()),
+            #[cfg(feature = "gpu")]
+            Self::Adapter(_, picture) => (picture.weights(), picture.bytes()),
+        }
+    }
+
+    /// The picture in these colors.
+    pub(crate) fn image(&self, colors: &KeyColors<'_>) -> anyhow::Result<Image> {
+        match self {
+            Self::Processor(picture) => Ok(picture.image(colors)),
+            #[cfg(feature = "gpu")]
+            Self::Adapter(gpu, picture) => {
+                picture.recolor(gpu, colors)?;
+                Ok(picture.image(gpu)?)
+            }
+        }
+    }
+}
+
+impl<'a> Shown<'a> {
+    /// Coarse meshes with the keys of their colors.
+    fn templates(&self) -> Vec<Template<'a>> {
+        let keyed = self.cells.iter().zip_eq(&self.colored.coloring.color_keys);
+        keyed
+            .map(|(cell, color_keys)| Template {
+                mesh: &cell.mesh,
+                color_keys,
+                values: &[],
+            })
+            .collect()
+    }
+
+    fn instances(&self, id: impl Fn(usize) -> TemplateId) -> Vec<Instance> {
+        let placements = self.placements.iter();
+        placements
+            .map(|&(cell, placement)| Instance {
+                placement,
+                ..Instance::new(id(cell))
+            })
+            .collect()
+    }
+
+    /// Coarse patches of all instances.
+    fn patches(&self) -> u64 {
+        let placements = self.placements.iter();
+        let patches = placements.map(|&(cell, _)| self.cells[cell].mesh.patches.len() as u64);
+        patches.sum()
+    }
+
+    /// How it is refined as it is drawn.
+    fn settings(&self) -> anyhow::Result<AdaptiveSettings> {
+        let args = self.args;
+        let lod = match mode(args)? {
+            LodMode::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
+            LodMode::Static => LodCriterion::PixelError(0.5),
+            LodMode::Adaptive | LodMode::Prerefined | LodMode::Exploration => {
+                LodCriterion::PixelError(args.error() as f32)
+            }
+        };
+        Ok(AdaptiveSettings {
+            lod,
+            wireframe: args.wireframe,
+            ..AdaptiveSettings::default()
+        })
+    }
+}
+
+/// Level if none is given.
+const DEFAULT_LEVEL: u32 = 4;
+
+/// The mode that follows from the options.
+///
+/// # Errors
+/// Wrong usage: a level where levels follow from the error.
+pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
+    let exploring = args.lod == Some(LodMode::Exploration);
+    if args.budget.is_some() && !exploring {
+        return usage("--budget is for --lod exploration");
+    }
+    if exploring && args.pixels.is_some() {
+        return usage("--lod exploration is within half a pixel: leave out --pixels");
+    }
+    match (args.lod, args.level) {
+        (Some(LodMode::Adaptive), Some(_)) => usage(
+            "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
+        ),
+        (Some(LodMode::Exploration | LodMode::Static), Some(_)) => {
+            usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
+        }
+        (Some(LodMode::Static), None) if args.pixels.is_some() => {
+            usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
+        }
+        (Some(mode), _) => Ok(mode),
+        (None, Some(_)) => Ok(LodMode::Homogeneous),
+        (None, None) => Ok(LodMode::Adaptive),
+    }
+}

@@ -1,0 +1,121 @@
+//! Pictures by the processor.
+
+use std::convert::Infallible;
+
+use neurotess::picture::color::ColorTable;
+use neurotess::picture::{AdaptiveSettings, Frame, PictureOptions, TemplateId, Viewpoint, Watch};
+use neurotess::raster::{
+    self, PictureError, Scene, SceneMarkers, SceneMesh, draw_static as draw_keyed,
+};
+
+use super::super::markers;
+use super::super::meshes::SceneMeshes;
+use super::{Cost, Recolored, Shown, SourceStats, Take};
+
+/// Draws by the processor.
+pub(super) struct Processor {
+    settings: AdaptiveSettings,
+    markers: Option<SceneMarkers>,
+    meshes: Vec<SceneMesh>,
+    pub(super) watch: Watch,
+    /// Patches of all cells, and what the last picture took.
+    patches: u64,
+    last: raster::Cost,
+}
+
+impl Processor {
+    pub(super) fn new(
+        options: &PictureOptions,
+        shown: &Shown<'_>,
+        meshes: SceneMeshes,
+    ) -> anyhow::Result<Self> {
+        let colored = shown.colored;
+        let settings = |sub_pixels| markers::settings(shown.args, sub_pixels, None);
+        let markers = colored.markers.as_ref().map(|set| {
+            let in_each = options.samples_in_sub_pixel();
+            SceneMarkers::new(&set.markers, settings(options.sub_pixels(in_each)))
+        });
+        Ok(Self {
+            settings: shown.settings()?,
+            markers,
+            meshes: meshes.for_processor(&colored.mesh_keys),
+            watch: Watch::default(),
+            patches: shown.patches(),
+            last: raster::Cost::default(),
+        })
+    }
+
+    fn scene<'a>(&'a self, shown: &Shown<'a>) -> anyhow::Result<Scene<'a>> {
+        let instances = shown.instances(|cell| TemplateId(cell as u32));
+        let scene = Scene::new(shown.templates(), instances, self.settings)?;
+        let scene = scene.with_markers(self.markers.as_ref());
+        Ok(scene.with_meshes(&self.meshes))
+    }
+
+    pub(super) fn draw(
+        &mut self,
+        shown: &Shown<'_>,
+        view: &Viewpoint,
+        table: &ColorTable,
+        options: &PictureOptions,
+        take: Take<'_>,
+    ) -> anyhow::Result<Cost> {
+        let scene = self.scene(shown)?;
+        let drawn = raster::draw(&scene, view, table, options, &self.watch, take);
+        let cost = drawn.map_err(|e| match e {
+            PictureError::Sink(e) => e,
+            PictureError::Stopped => anyhow::anyhow!("stopped"),
+        })?;
+        drop(scene);
+        self.last = cost.clone();
+        Ok(Cost {
+            cpu_ms: cost.cpu_ms,
+            gpu_ms: None,
+            tiles: cost.bands,
+            target_bytes: cost.sample_bytes,
+        })
+    }
+
+    pub(super) fn draw_static(
+        &mut self,
+        shown: &Shown<'_>,
+        view: &Viewpoint,
+        table: &ColorTable,
+        options: &PictureOptions,
+    ) -> anyhow::Result<Option<(Recolored, usize)>> {
+        if options.look.wire > 0.0 {
+            return Ok(None);
+        }
+        let scene = self.scene(shown)?;
+        let drawn = draw_keyed(&scene, view, table, options, &self.watch);
+        let (picture, cost) = drawn.map_err(|e: PictureError<Infallible>| match e {
+            PictureError::Sink(never) => match never {},
+            PictureError::Stopped => anyhow::anyhow!("stopped"),
+        })?;
+        drop(scene);
+        let bands = cost.bands;
+        self.last = cost;
+        Ok(Some((Recolored::Processor(picture), bands)))
+    }
+
+    pub(super) fn stats(&self, view: &Viewpoint, options: &PictureOptions) -> SourceStats {
+        let sub_pixels = options.sub_pixels(options.samples_in_sub_pixel());
+        let markers = self.markers.as_ref().map(|markers| {
+            let size = options.size.map(|n| n * sub_pixels);
+            let [drawn, in_view] = markers.shown(&Frame::whole(view.camera, view.near, size));
+            [drawn, in_view, markers.len()]
+        });
+        let triangles = self.meshes.iter().map(|mesh| mesh.triangles() as u64);
+        let count = self.meshes.len() as u64;
+        SourceStats {
+            patches: self.patches,
+            patches_drawn: self.last.patches,
+            vertices: self.last.vertices,
+            triangles: self.last.triangles,
+            levels: self.last.levels.clone(),
+            markers,
+            meshes: (count > 0).then(|| [count, triangles.sum()]),
+            ..SourceStats::default()
+        }
+    }
+}

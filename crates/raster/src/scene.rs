@@ -1,0 +1,83 @@
+//! What is drawn.
+
+use neurotess_mesh::CoarseMesh;
+use neurotess_picture::bounds;
+use neurotess_picture::{
+    AdaptiveSettings, BoundingSphere, Instance, SceneError, Template, check_placement,
+};
+use rayon::prelude::*;
+
+use crate::markers::SceneMarkers;
+use crate::meshes::SceneMesh;
+
+/// Templates and instances of them, with what is beside them.
+pub struct Scene<'a> {
+    pub(crate) templates: Vec<SceneTemplate<'a>>,
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) settings: AdaptiveSettings,
+    pub(crate) markers: Option<&'a SceneMarkers>,
+    pub(crate) meshes: &'a [SceneMesh],
+}
+
+/// A template and where it is.
+pub(crate) struct SceneTemplate<'a> {
+    pub(crate) template: Template<'a>,
+    /// Spheres that hold it, relative to nothing (µm).
+    pub(crate) spheres: Vec<BoundingSphere>,
+}
+
+/// Most spheres of a template.
+const SPHERES: usize = 64;
+
+impl<'a> Scene<'a> {
+    /// Checks every instance.
+    ///
+    /// # Errors
+    /// An instance refers to a template that does not exist, or has an invalid placement.
+    pub fn new(
+        templates: Vec<Template<'a>>,
+        instances: Vec<Instance>,
+        settings: AdaptiveSettings,
+    ) -> Result<Self, SceneError> {
+        for (index, instance) in instances.iter().enumerate() {
+            check_placement(index, instance, templates.len())?;
+        }
+        let around = |mesh: &CoarseMesh| bounds::merged(&bounds::bounds(mesh), SPHERES);
+        let templates = templates.into_par_iter().map(|template| SceneTemplate {
+            spheres: around(template.mesh),
+            template,
+        });
+        Ok(Self {
+            templates: templates.collect(),
+            instances,
+            settings,
+            markers: None,
+            meshes: &[],
+        })
+    }
+
+    /// The same with markers beside it.
+    #[must_use]
+    pub fn with_markers(mut self, markers: Option<&'a SceneMarkers>) -> Self {
+        self.markers = markers;
+        self
+    }
+
+    /// The same with meshes that are no cells.
+    #[must_use]
+    pub fn with_meshes(mut self, meshes: &'a [SceneMesh]) -> Self {
+        self.meshes = meshes;
+        self
+    }
+
+    /// Number of patches of all instances.
+    pub fn patches(&self) -> u64 {
+        let shown = self.instances.iter().filter(|instance| !instance.hidden);
+        shown.map(|instance| self.patches_of(instance) as u64).sum()
+    }
+
+    pub(crate) fn patches_of(&self, instance: &Instance) -> usize {
+        let template = &self.templates[instance.template.0 as usize];
+        template.template.mesh.patches.len()
+    }
+}
