@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Side (sub-pixels) of a tile.
-pub(crate) const TILE: i32 = 64;
+pub(crate) const TILE: i32 = 32;
 /// Sub-pixels of a tile.
 pub(crate) const IN_TILE: usize = (TILE * TILE) as usize;
 
@@ -41,6 +41,27 @@ impl Grid {
             self.drawn[0].start + (tile % across) as i32 * TILE,
             self.drawn[1].start + (tile / across) as i32 * TILE,
         ]
+    }
+
+    /// The tiles of a row of sub-pixels from column 0 to `end`: each with the first column that it has of them, and their
+    /// places.
+    pub(crate) fn along_row(
+        &self,
+        y: i32,
+        end: u32,
+        mut tile_at: impl FnMut(usize, u32, Range<usize>),
+    ) {
+        let start = self.drawn[0].start;
+        let down = y - self.drawn[1].start;
+        let mut x = 0;
+        while x < end as i32 {
+            let within = (x - start) % TILE;
+            let count = (TILE - within).min(end as i32 - x);
+            let tile = (down / TILE) * self.tiles[0] + (x - start) / TILE;
+            let place = ((down % TILE) * TILE + within) as usize;
+            tile_at(tile as usize, x as u32, place..place + count as usize);
+            x += count;
+        }
     }
 
     /// The tile that holds a sub-pixel, and its index there; none outside.

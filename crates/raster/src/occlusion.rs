@@ -17,10 +17,22 @@ pub(crate) const BLUR: i32 = 4;
 
 /// A tile whose samples are lit: by sub-pixel.
 pub(crate) struct LitTile {
+    /// Linear light, premultiplied.
+    pub(crate) colors: Vec<[f32; 4]>,
     /// Depth (µm) of what stands for it; 0: nothing does.
     pub(crate) depths: Vec<f32>,
     /// Its normal.
     pub(crate) normals: Vec<Vec3>,
+}
+
+impl LitTile {
+    pub(crate) fn new() -> Self {
+        Self {
+            colors: vec![[0.0; 4]; IN_TILE],
+            depths: vec![0.0; IN_TILE],
+            normals: vec![Vec3::ZERO; IN_TILE],
+        }
+    }
 }
 
 /// By tile that holds anything: the share of light that reaches each of its sub-pixels.
@@ -91,10 +103,7 @@ impl Occlusion<'_> {
             let mut sum = 0.0;
             for tap in &taps[turn as usize] {
                 let offset = *tap * reach;
-                let other = [
-                    pixel[0] + offset.x.round_ties_even() as i32,
-                    pixel[1] + offset.y.round_ties_even() as i32,
-                ];
+                let other = [pixel[0] + rounded(offset.x), pixel[1] + rounded(offset.y)];
                 let there = self.depth(other);
                 if there == 0.0 {
                     continue;
@@ -162,4 +171,10 @@ impl Occlusion<'_> {
         }
         out
     }
+}
+
+/// The nearest whole number, the even one of two, of numbers below 2²²: what is added leaves no room for fractions.
+fn rounded(x: f32) -> i32 {
+    const SHIFT: f32 = 12_582_912.0;
+    ((x + SHIFT) - SHIFT) as i32
 }

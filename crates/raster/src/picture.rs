@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use neurotess_mesh::{CoarseMesh, Surface};
+use neurotess_mesh::{CoarseMesh, Surface as _};
 use neurotess_picture::color::{ColorTable, linear};
 use neurotess_picture::{Image, LARGEST, PictureOptions, Viewpoint, Watch};
 use neurotess_refine::{HIGHEST_LEVEL, Refinement};
@@ -21,7 +21,7 @@ use crate::grid::{Grid, IN_TILE, TILE};
 use crate::light::Lights;
 use crate::occlusion::{BLUR, LitTile, Occlusion, Shares};
 use crate::projection::Projection;
-use crate::sample::{Held, Surface as HeldSurface};
+use crate::sample::{Held, Surface};
 use crate::scene::Scene;
 use crate::triangle::{Drawn, Tile, rasterize};
 
@@ -299,34 +299,55 @@ impl Painter<'_> {
         Some(occlusion.shares())
     }
 
-    /// Depths and normals of what stands for each sub-pixel: its first sample that something solid covers.
+    /// Samples, lit.
     pub(crate) fn lit<H: Held, const S: usize>(
         &self,
         grid: &Grid,
         tiles: &[Option<Tile<H, S>>],
     ) -> Vec<Option<LitTile>> {
-        let projection = &self.setup.projection;
+        let Setup {
+            projection, lights, ..
+        } = self.setup;
         let lit = |(index, tile): (usize, &Option<Tile<H, S>>)| {
             let tile = tile.as_ref()?;
             let corner = grid.corner(index);
-            let mut depths = vec![0.0; IN_TILE];
-            let mut normals = vec![glam::Vec3::ZERO; IN_TILE];
+            let mut made = LitTile::new();
             for place in 0..IN_TILE {
                 let nearness = &tile.nearness[place];
-                let solid = (0..S).find(|&s| {
-                    nearness[s] > 0.0 && !tile.held[place][s].surface().is_translucent()
-                });
-                let Some(s) = solid else { continue };
-                let pixel = pixel_at(corner, place);
-                let surface = tile.held[place][s].surface();
-                let on = self.setup.lights.on(surface, projection.eye_from(pixel));
-                depths[place] = projection.depth(nearness[s]);
-                if depths[place] == 0.0 {
-                    depths[place] = f32::MIN_POSITIVE;
+                if nearness.iter().all(|&n| n == 0.0) {
+                    continue;
                 }
-                normals[place] = on.normal;
+                let to_eye = projection.eye_from(pixel_at(corner, place));
+                let color = &mut made.colors[place];
+                // Samples of one sub-pixel are mostly of one triangle.
+                let mut last: Option<(Surface, [f32; 3])> = None;
+                for (held, &near) in tile.held[place].iter().zip(nearness) {
+                    if near == 0.0 {
+                        continue;
+                    }
+                    let surface = held.surface();
+                    let known = last.filter(|(same, _)| *same == surface);
+                    let light = match known {
+                        Some((_, light)) => light,
+                        None => {
+                            let on = lights.on(surface, to_eye);
+                            // The first sample that something solid covers stands for its sub-pixel.
+                            if made.depths[place] == 0.0 && !surface.is_translucent() {
+                                let depth = projection.depth(near);
+                                made.depths[place] = if depth == 0.0 { 1e-20 } else { depth };
+                                made.normals[place] = on.normal;
+                            }
+                            lights.colored(surface, &on)
+                        }
+                    };
+                    last = Some((surface, light));
+                    for k in 0..3 {
+                        color[k] += light[k] * (1.0 / S as f32);
+                    }
+                    color[3] += 1.0 / S as f32;
+                }
             }
-            Some(LitTile { depths, normals })
+            Some(made)
         };
         tiles.par_iter().enumerate().map(lit).collect()
     }
@@ -334,69 +355,21 @@ impl Painter<'_> {
     /// The pixels of a band; none if it was stopped.
     fn image<const S: usize>(&self, band: &Band, cost: &mut Cost) -> Option<Image> {
         let grid = &band.grid;
-        let tiles = self.samples::<HeldSurface, S>(grid)?;
+        let tiles = self.samples::<Surface, S>(grid)?;
         let held = tiles.iter().flatten().count() as u64;
-        let bytes = IN_TILE * S * (size_of::<f32>() + size_of::<HeldSurface>());
+        let bytes = IN_TILE * S * (size_of::<f32>() + size_of::<Surface>());
         cost.sample_bytes = cost.sample_bytes.max(held * bytes as u64);
-        let lit = match self.setup.occlusion {
-            Some(_) => self.lit(grid, &tiles),
-            None => Vec::new(),
-        };
-        let colors = self.colors(grid, tiles);
+        let lit = self.lit(grid, &tiles);
+        drop(tiles);
         if self.watch.is_stopped() {
             return None;
         }
         let shares = self.shares(grid, &lit);
-        drop(lit);
-        Some(self.gathered(band, &colors, shares.as_ref()))
-    }
-
-    /// Colors of sub-pixels: linear, premultiplied, by tile.
-    fn colors<const S: usize>(
-        &self,
-        grid: &Grid,
-        tiles: Vec<Option<Tile<HeldSurface, S>>>,
-    ) -> Vec<Option<Vec<[f32; 4]>>> {
-        let Setup {
-            projection, lights, ..
-        } = self.setup;
-        let lit = |(index, tile): (usize, Option<Tile<HeldSurface, S>>)| {
-            let tile = tile?;
-            let corner = grid.corner(index);
-            let mut colors = vec![[0.0; 4]; IN_TILE];
-            for (place, color) in colors.iter_mut().enumerate() {
-                let nearness = &tile.nearness[place];
-                if nearness.iter().all(|&n| n == 0.0) {
-                    continue;
-                }
-                let to_eye = projection.eye_from(pixel_at(corner, place));
-                let mut last: Option<(HeldSurface, [f32; 3])> = None;
-                for s in (0..S).filter(|&s| nearness[s] > 0.0) {
-                    let surface = tile.held[place][s];
-                    // Samples of one sub-pixel are mostly of one triangle.
-                    let lit = match last {
-                        Some((same, lit)) if same == surface => lit,
-                        _ => lights.colored(surface, &lights.on(surface, to_eye)),
-                    };
-                    last = Some((surface, lit));
-                    for k in 0..3 {
-                        color[k] += lit[k] / S as f32;
-                    }
-                    color[3] += 1.0 / S as f32;
-                }
-            }
-            Some(colors)
-        };
-        tiles.into_par_iter().enumerate().map(lit).collect()
+        Some(self.gathered(band, &lit, shares.as_ref()))
     }
 
     /// Pixels of sub-pixels.
-    fn gathered(
-        &self,
-        band: &Band,
-        colors: &[Option<Vec<[f32; 4]>>],
-        shares: Option<&Shares>,
-    ) -> Image {
+    fn gathered(&self, band: &Band, lit: &[Option<LitTile>], shares: Option<&Shares>) -> Image {
         let Setup { size, scale, .. } = *self.setup;
         let background = self.options.background;
         let empty = background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
@@ -405,37 +378,34 @@ impl Painter<'_> {
         let row_bytes = 4 * size[0] as usize;
         let share = 1.0 / (scale * scale) as f32;
         let rows = image.pixels.par_chunks_mut(row_bytes);
-        rows.zip(band.rows.clone().into_par_iter())
-            .for_each(|(row, y)| {
-                let sub_rows = y * scale..(y + 1) * scale;
-                for (x, out) in (0..size[0]).zip(row.chunks_exact_mut(4)) {
-                    let mut sum = [0.0_f32; 4];
-                    for sub_y in sub_rows.clone() {
-                        for sub_x in x * scale..(x + 1) * scale {
-                            let at = band.grid.place([sub_x as i32, sub_y as i32]);
-                            let Some((tile, place)) = at else { continue };
-                            let Some(colors) = &colors[tile] else {
-                                continue;
-                            };
-                            let color = colors[place];
+        let gather = |(row, y): (&mut [u8], u32)| {
+            let mut sums = vec![[0.0_f32; 4]; size[0] as usize];
+            for sub_y in y * scale..(y + 1) * scale {
+                band.grid
+                    .along_row(sub_y as i32, size[0] * scale, |tile, first, places| {
+                        let Some(lit) = &lit[tile] else { return };
+                        let shares = shares.and_then(|shares| shares[tile].as_ref());
+                        for (sub_x, place) in (first..).zip(places) {
+                            let color = lit.colors[place];
                             if color[3] == 0.0 {
                                 continue;
                             }
-                            let light =
-                                shares.and_then(|shares| Some(shares[tile].as_ref()?[place]));
-                            let light = light.unwrap_or(1.0);
+                            let light = shares.map_or(1.0, |shares| shares[place]);
+                            let sum = &mut sums[(sub_x / scale) as usize];
                             for k in 0..3 {
                                 sum[k] += color[k] * light;
                             }
                             sum[3] += color[3];
                         }
-                    }
-                    if sum[3] > 0.0 {
-                        let sum = sum.map(|n| n * share);
-                        out.copy_from_slice(&bytes::pixel(sum, behind));
-                    }
+                    });
+            }
+            for (out, sum) in row.chunks_exact_mut(4).zip(sums) {
+                if sum[3] > 0.0 {
+                    out.copy_from_slice(&bytes::pixel(sum.map(|n| n * share), behind));
                 }
-            });
+            }
+        };
+        rows.zip(band.rows.clone().into_par_iter()).for_each(gather);
         image
     }
 }

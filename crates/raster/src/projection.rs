@@ -113,8 +113,10 @@ impl Projection {
         }
         let scale = 1.0 / self.sub_pixel(depth);
         let steps = |half: f32, along: f32| {
-            let place = ((half + along * scale) * STEPS as f32).floor();
-            place.clamp(-FARTHEST, FARTHEST) as i32
+            let place = (half + along * scale) * STEPS as f32;
+            let place = place.clamp(-FARTHEST, FARTHEST);
+            let towards_zero = place as i32;
+            towards_zero - i32::from((towards_zero as f32) > place)
         };
         Some(Place {
             x: steps(self.half[0], view.x),

@@ -11,7 +11,7 @@ use crate::sample::Held;
 /// Places of four samples in a sub-pixel (steps), those of GPUs; one sample is in the middle.
 const FOUR: [[i32; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
 /// Largest side (steps) of a triangle whose edge functions fit 32 bits everywhere around it.
-const SMALL: i32 = TILE * STEPS;
+const SMALL: i32 = 64 * STEPS;
 
 /// Samples of a tile, `S` of each sub-pixel.
 pub(crate) struct Tile<H, const S: usize> {
