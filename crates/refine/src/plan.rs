@@ -4,11 +4,14 @@
 //! direction, then the inner ones of every patch row by row. Memory grows with the coarse mesh
 //! only, not with the level.
 
+use std::ops::Range;
+
 use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 use rayon::prelude::*;
 
-use crate::evaluate::{Corner, EdgeKind, SIDES};
-use crate::level::{HIGHEST_LEVEL, bend, edge_level};
+use crate::evaluate::{Corners, EdgeKind, SIDES};
+use crate::fours::{Four, Fours};
+use crate::level::{HIGHEST_LEVEL, bend, edge_levels};
 use crate::{Caps, Lod, Path, RefineOptions};
 
 /// An edge of the coarse mesh.
@@ -23,6 +26,12 @@ pub(crate) struct Edge {
     /// Number of its first inner vertex, of which surfaces that have more than 32 bits of them keep the low ones: such
     /// can be counted only.
     pub(crate) first: u32,
+}
+
+impl Edge {
+    pub(crate) fn ends(&self) -> [u32; 2] {
+        [self.from, self.to]
+    }
 }
 
 /// All edges, and the edges and inner vertices of each patch.
@@ -44,21 +53,36 @@ pub(crate) struct Grid {
     levels: [u32; 4],
 }
 
+/// The first number of a range, and how many there are up to the next.
+fn numbers(range: &Range<usize>, first: impl Fn(usize) -> u32) -> (u32, usize) {
+    let start = first(range.start);
+    (start, first(range.end).wrapping_sub(start) as usize)
+}
+
 /// Edges that are worth a thread.
 const MIN_EDGES: usize = 4096;
 
 impl Plan {
     pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
         let (mut edges, patch_edges) = find_edges(mesh);
-        edges
-            .par_iter_mut()
-            .with_min_len(MIN_EDGES)
-            .for_each(|edge| {
-                let ends = [edge.from, edge.to]
-                    .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
-                let [(a, ta), (b, tb)] = &ends;
-                edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u16;
-            });
+        edges.par_chunks_mut(MIN_EDGES).for_each(|edges| {
+            let set = |edges: &mut [Edge], four: Four| {
+                let of = four.all().map(|edge| &edges[edge as usize]);
+                let levels = edge_levels(mesh, lod, options.path, of);
+                for (edge, level) in four.all().into_iter().zip(levels) {
+                    edges[edge as usize].level = level as u16;
+                }
+            };
+            let mut waiting = Fours::default();
+            for edge in 0..edges.len() {
+                if let Some(four) = waiting.add(edges[edge].kind as u32, edge as u32) {
+                    set(edges, four);
+                }
+            }
+            for four in waiting.rest() {
+                set(edges, four);
+            }
+        });
         let mut next = mesh.vertices.len() as u64;
         for edge in &mut edges {
             edge.first = next as u32;
@@ -89,8 +113,29 @@ impl Plan {
         usize::try_from(self.vertices).unwrap_or(usize::MAX)
     }
 
+    /// Number of the first inner vertex of some edges, and how many they have.
+    pub(crate) fn numbers_of_edges(&self, edges: &Range<usize>) -> (u32, usize) {
+        let first = |edge: usize| match self.edges.get(edge) {
+            Some(edge) => edge.first,
+            None => self.first_of_patch(0),
+        };
+        numbers(edges, first)
+    }
+
+    /// The same for patches.
+    pub(crate) fn numbers_of_patches(&self, patches: &Range<usize>) -> (u32, usize) {
+        numbers(patches, |patch| self.first_of_patch(patch))
+    }
+
+    fn first_of_patch(&self, patch: usize) -> u32 {
+        let first = self.patch_first.get(patch).copied();
+        first.unwrap_or(self.vertices as u32)
+    }
+
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
-        let levels = self.patch_edges[patch].map(|e| u32::from(self.edges[e as usize].level));
+        let [a, b, c, d] = self.patch_edges[patch];
+        let level = |edge: u32| u32::from(self.edges[edge as usize].level);
+        let levels = [level(a), level(b), level(c), level(d)];
         Grid::new(mesh.patches[patch].kind, options.caps, levels)
     }
 
@@ -104,38 +149,32 @@ impl Plan {
         i: u32,
         j: u32,
     ) -> u32 {
-        let side = if j == 0 {
-            0
-        } else if j == grid.ny {
-            2
-        } else if i == 0 {
-            3
-        } else if i == grid.nx {
-            1
-        } else {
-            return self.patch_first[patch] + (j - 1) * (grid.nx - 1) + i - 1;
-        };
-        let (place, count) = if side % 2 == 0 {
-            (i, grid.nx)
-        } else {
-            (j, grid.ny)
-        };
-        let level = grid.levels[side];
-        let place = snap(place, count, level);
-        let (start, end) = SIDES[side];
-        if place == 0 {
-            return corners[start];
+        let side = |side: usize| self.side(corners, patch, grid, side);
+        match (i, j) {
+            (i, 0) => side(0).number(i),
+            (i, j) if j == grid.ny => side(2).number(i),
+            (0, j) => side(3).number(j),
+            (i, j) if i == grid.nx => side(1).number(j),
+            (i, j) => self.patch_first[patch].wrapping_add(grid.inner(i, j) as u32),
         }
-        if place == level {
-            return corners[end];
-        }
+    }
+
+    #[inline(always)]
+    fn side(&self, corners: [u32; 4], patch: usize, grid: &Grid, side: usize) -> Side {
         let edge = &self.edges[self.patch_edges[patch][side] as usize];
-        let place = if edge.from == corners[start] {
-            place
-        } else {
-            level - place
+        let (start, end) = (corners[SIDES[side].0], corners[SIDES[side].1]);
+        let level = grid.levels[side];
+        let (before, step) = match edge.from == start {
+            true => (edge.first.wrapping_sub(1), 1),
+            false => (edge.first.wrapping_add(level - 1), u32::MAX),
         };
-        edge.first + place - 1
+        Side {
+            ends: [start, end],
+            level,
+            steps: [grid.nx, grid.ny][side % 2],
+            before,
+            step,
+        }
     }
 
     /// Appends the faces of a patch. `rows`: room for the numbers of its vertices, to be used again.
@@ -147,23 +186,75 @@ impl Plan {
         rows: &mut Vec<u32>,
         out: &mut Faces,
     ) {
-        let corners = mesh.patches[patch].corners;
+        let Patch { corners, kind } = mesh.patches[patch];
         let grid = self.grid(mesh, options, patch);
-        let fans = mesh.patches[patch].kind != PatchKind::Lateral;
-        // Up to four cells share a vertex: its number is found once.
-        rows.clear();
-        for j in 0..=grid.ny {
-            rows.extend((0..=grid.nx).map(|i| self.vertex(corners, patch, &grid, i, j)));
+        if grid.nx == 1 && grid.ny == 1 {
+            cell(corners, false, options.quads, out);
+            return;
         }
+        // Up to four cells share a vertex: its number is found once.
+        self.numbers(corners, patch, &grid, rows);
+        let fans = kind != PatchKind::Lateral;
         let width = grid.nx as usize + 1;
-        for (j, (row, next)) in (0..).zip(rows.chunks(width).zip(rows[width..].chunks(width))) {
-            for (i, (near, far)) in (0..).zip(row.windows(2).zip(next.windows(2))) {
-                let quad = [near[0], near[1], far[1], far[0]];
-                // Diagonals run towards the patch's corners on round patches, and are parallel on
-                // others.
-                let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
-                cell(quad, falling, options.quads, out);
+        let is_whole = !options.quads && grid.is_whole();
+        let pairs = rows.chunks(width).zip(rows[width..].chunks(width));
+        for (j, (row, next)) in (0..).zip(pairs) {
+            let cells = row.windows(2).zip(next.windows(2));
+            let cells = cells.map(|(near, far)| [near[0], near[1], far[1], far[0]]);
+            // Diagonals run towards the patch's corners on round patches, and are parallel on others.
+            let falling = |i: u32| fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
+            if !is_whole {
+                for (i, quad) in (0..).zip(cells) {
+                    cell(quad, falling(i), options.quads, out);
+                }
+                continue;
             }
+            let start = out.triangles.len();
+            out.triangles.resize(start + 2 * grid.nx as usize, [0; 3]);
+            let pairs = out.triangles[start..].as_chunks_mut().0;
+            for ((i, quad), pair) in (0..).zip(cells).zip(pairs) {
+                *pair = halves(quad, falling(i));
+            }
+        }
+    }
+
+    /// The numbers of all vertices of a patch's grid, row by row.
+    fn numbers(&self, corners: [u32; 4], patch: usize, grid: &Grid, rows: &mut Vec<u32>) {
+        let side = |side: usize| self.side(corners, patch, grid, side);
+        let (near, right, far, left) = (side(0), side(1), side(2), side(3));
+        rows.clear();
+        rows.extend((0..=grid.nx).map(|i| near.number(i)));
+        let mut first = self.patch_first[patch];
+        for j in 1..grid.ny {
+            let next = first.wrapping_add(grid.nx - 1);
+            rows.push(left.number(j));
+            rows.extend(first..next);
+            rows.push(right.number(j));
+            first = next;
+        }
+        rows.extend((0..=grid.nx).map(|i| far.number(i)));
+    }
+}
+
+/// A patch's side with the numbers of its vertices.
+struct Side {
+    ends: [u32; 2],
+    level: u32,
+    /// Columns or rows of the patch's grid.
+    steps: u32,
+    /// What the number of the start would be if it were an inner vertex, and the difference to the next.
+    before: u32,
+    step: u32,
+}
+
+impl Side {
+    /// Number of the vertex at a column or row of the patch's grid.
+    #[inline(always)]
+    fn number(&self, place: u32) -> u32 {
+        match snap(place, self.steps, self.level) {
+            0 => self.ends[0],
+            place if place == self.level => self.ends[1],
+            place => self.before.wrapping_add(self.step.wrapping_mul(place)),
         }
     }
 }
@@ -185,15 +276,20 @@ fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
         out.quads.push(quad);
         return;
     }
-    let pair = if falling {
-        [[a, b, d], [b, c, d]]
-    } else {
-        [[a, b, c], [a, c, d]]
-    };
-    for [p, q, r] in pair {
+    for [p, q, r] in halves(quad, falling) {
         if p != q && q != r && r != p {
             out.triangles.push([p, q, r]);
         }
+    }
+}
+
+/// The two triangles of a cell.
+#[inline(always)]
+fn halves([a, b, c, d]: [u32; 4], falling: bool) -> [[u32; 3]; 2] {
+    if falling {
+        [[a, b, d], [b, c, d]]
+    } else {
+        [[a, b, c], [a, c, d]]
     }
 }
 
@@ -203,10 +299,10 @@ pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
     let bends: Vec<f32> = edges
         .iter()
         .map(|edge| {
-            let [a, b] = [edge.from, edge.to].map(|v| Corner::new(mesh, v));
+            let [a, b] = [edge.from, edge.to].map(|v| Corners::new(mesh, [v; 4]));
             // A bound for both paths: on a straight one the radius may bend more.
             let [curved, straight] =
-                [Path::Hermite, Path::Linear].map(|path| bend(path, edge.kind, &a, &b));
+                [Path::Hermite, Path::Linear].map(|path| bend(path, edge.kind, &a, &b).x);
             let bend = if straight > curved { straight } else { curved };
             if bend.is_nan() { f32::INFINITY } else { bend }
         })
@@ -230,6 +326,17 @@ impl Grid {
             (nx, ny) = (finer(nx.max(ny)), finer(nx.max(ny)));
         }
         Self { nx, ny, levels }
+    }
+
+    /// Whether no side is coarser.
+    fn is_whole(&self) -> bool {
+        self.levels == [self.nx, self.ny, self.nx, self.ny]
+    }
+
+    /// Which of the inner vertices the one at column i of row j is.
+    #[inline(always)]
+    pub(crate) fn inner(&self, i: u32, j: u32) -> usize {
+        ((j - 1) * (self.nx - 1) + i - 1) as usize
     }
 
     /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one

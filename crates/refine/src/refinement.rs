@@ -1,17 +1,16 @@
 //! The refined surface, evaluated block by block from the coarse mesh.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{
-    CoarseMesh, Faces, Patch, PatchKind, Role, Soundness, Surface, SurfaceVertex, TracingPoint,
-};
+use neurotess_mesh::{CoarseMesh, Faces, PatchKind, Soundness, Surface, SurfaceVertex};
 use rayon::prelude::*;
 
-use crate::evaluate::{
-    Corner, EdgeCurve, EdgeKind, EdgeNormals, PatchRow, PatchRows, PatchShape, SIDES,
-};
-use crate::plan::{Edge, Grid, Plan};
+use crate::evaluate::{Corners, EdgeKind, PatchShape, SIDES};
+use crate::fours::{Four, Fours};
+use crate::inner::{InnerEdges, coarse_vertex, inner_vertex, lateral_vertices, other_vertices};
+use crate::plan::{Edge, Plan};
 use crate::{CoarseSurface, Lod, RefineOptions};
 
 /// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
@@ -80,8 +79,8 @@ impl<'m> Refinement<'m> {
         let index = self.plan.vertex(corners, patch, &grid, i, j);
         if let Some(inner) = index.checked_sub(self.plan.patch_first[patch]) {
             let (x, y) = (inner % (grid.nx - 1) + 1, inner / (grid.nx - 1) + 1);
-            let inner = InnerVertices::new(self, patch);
-            return inner.vertex(&inner.row(&inner.rows(), y), [x, y]);
+            let of = (&self.shape(patch), &grid);
+            return inner_vertex(self.mesh, &self.options, patch, of, [x, y]);
         }
         let on_edge = |&e: &u32| {
             let edge = &self.plan.edges[e as usize];
@@ -92,7 +91,7 @@ impl<'m> Refinement<'m> {
         };
         let edges = &self.plan.patch_edges[patch];
         let found = edges.iter().find_map(on_edge);
-        found.unwrap_or_else(|| self.coarse_vertex(index as usize))
+        found.unwrap_or_else(|| coarse_vertex(self.mesh, index as usize))
     }
 
     /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
@@ -133,7 +132,6 @@ impl<'m> Refinement<'m> {
         positions: &mut Vec<(u32, DVec3)>,
         sum: &mut (f64, f64),
     ) {
-        let grid = self.plan.grid(self.mesh, &self.options, patch);
         let corners = self.mesh.patches[patch].corners;
         positions.clear();
         let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
@@ -146,14 +144,10 @@ impl<'m> Refinement<'m> {
                 add(edge.first + k - 1, self.edge_vertex(edge, k).position);
             }
         }
-        let shape = self.shape(patch);
-        let first = self.plan.patch_first[patch];
-        for j in 1..grid.ny {
-            for i in 1..grid.nx {
-                let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
-                let index = first + (j - 1) * (grid.nx - 1) + i - 1;
-                add(index, shape.interior(&self.options, x, y).0);
-            }
+        let mut inner = Vec::new();
+        self.patch_vertices(patch..patch + 1, &mut inner);
+        for (index, vertex) in (self.plan.patch_first[patch]..).zip(&inner) {
+            add(index, vertex.position);
         }
         positions.sort_unstable_by_key(|&(index, _)| index);
         let at = |index: u32| {
@@ -178,174 +172,106 @@ impl<'m> Refinement<'m> {
             let edge = &self.plan.edges[self.plan.patch_edges[patch][side] as usize];
             (edge.kind, edge.from != corners[SIDES[side].0])
         });
-        let kind = self.mesh.patches[patch].kind;
-        PatchShape {
-            kind,
-            corners: corners.map(|v| Corner::new(self.mesh, v)),
-            sides,
-        }
-    }
-
-    fn tracing(&self, vertex: u32) -> &TracingPoint {
-        &self.mesh.tracing[self.mesh.vertices[vertex as usize].tracing as usize]
-    }
-
-    fn coarse_vertex(&self, index: usize) -> SurfaceVertex {
-        let vertex = &self.mesh.vertices[index];
-        let tracing = self.tracing(index as u32);
-        attributed(vertex.position, vertex.normal, tracing, tracing.radius)
+        PatchShape::new(self.mesh, patch, sides)
     }
 
     /// Inner vertex k of an edge, 0 < k < level.
-    fn edge_vertex(&self, plan: &Edge, k: u32) -> SurfaceVertex {
-        let ends = self.ends(plan);
-        InnerEdge::new(self, plan, &ends).vertex(k)
+    fn edge_vertex(&self, edge: &Edge, k: u32) -> SurfaceVertex {
+        let ends = Corners::of_edges(self.mesh, [edge.ends(); 4]);
+        let inner = InnerEdges::new(self.mesh, &self.options, edge.kind, [edge; 4], &ends);
+        inner.vertices(k)[0]
     }
 
-    /// Appends the inner vertices of an edge.
-    fn edge_vertices(&self, plan: &Edge, out: &mut Vec<SurfaceVertex>) {
-        let level = u32::from(plan.level);
-        if level < 2 {
-            return;
+    /// Appends the inner vertices of edges.
+    fn edge_vertices(&self, edges: Range<usize>, out: &mut Vec<SurfaceVertex>) {
+        let (first, count) = self.plan.numbers_of_edges(&edges);
+        let start = out.len();
+        out.resize(start + count, SurfaceVertex::default());
+        let out = &mut out[start..];
+        let mut waiting = Fours::default();
+        for edge in edges {
+            let Edge { kind, level, .. } = self.plan.edges[edge];
+            if level > 1 {
+                let key = u32::from(level) << 8 | kind as u32;
+                if let Some(four) = waiting.add(key, edge as u32) {
+                    self.four_edges(&four, first, out);
+                }
+            }
         }
-        let ends = self.ends(plan);
-        let inner = InnerEdge::new(self, plan, &ends);
-        out.extend((1..level).map(|k| inner.vertex(k)));
-    }
-
-    fn ends(&self, plan: &Edge) -> [Corner; 2] {
-        [plan.from, plan.to].map(|v| Corner::new(self.mesh, v))
-    }
-
-    fn patch_vertices(&self, patch: usize, out: &mut Vec<SurfaceVertex>) {
-        let grid = self.plan.grid(self.mesh, &self.options, patch);
-        if grid.nx < 2 || grid.ny < 2 {
-            return;
-        }
-        let inner = InnerVertices::new(self, patch);
-        let rows = inner.rows();
-        for j in 1..grid.ny {
-            let row = inner.row(&rows, j);
-            out.extend((1..grid.nx).map(|i| inner.vertex(&row, [i, j])));
-        }
-    }
-}
-
-/// What the inner vertices of an edge have in common.
-struct InnerEdge<'r> {
-    curve: EdgeCurve<'r>,
-    normals: EdgeNormals,
-    level: u16,
-    tracing: [&'r TracingPoint; 2],
-    /// Whether all of it belongs to where it ends: what leads from a fork to a branch is the branch's.
-    is_of_end: bool,
-    /// That of the soma, which all vertices of its edges show, so that the color changes at the neurite's ring.
-    soma: Option<&'r TracingPoint>,
-}
-
-impl<'r> InnerEdge<'r> {
-    fn new(refinement: &'r Refinement<'_>, plan: &Edge, ends: &'r [Corner; 2]) -> Self {
-        let [a, b] = ends;
-        let tracing = [plan.from, plan.to].map(|v| refinement.tracing(v));
-        let of_soma = |t: &&TracingPoint| plan.kind == EdgeKind::Soma && t.role == Role::Soma;
-        Self {
-            curve: EdgeCurve::new(plan.kind, a, b, refinement.options.path),
-            normals: EdgeNormals::new(plan.kind, a, b),
-            level: plan.level,
-            tracing,
-            is_of_end: match plan.kind {
-                EdgeKind::Loft => true,
-                EdgeKind::Along => tracing[0].role == Role::Joint,
-                EdgeKind::Ring | EdgeKind::Soma => false,
-            },
-            soma: tracing.into_iter().find(of_soma),
+        for four in waiting.rest() {
+            self.four_edges(&four, first, out);
         }
     }
 
-    /// Vertex k, 0 < k < level.
-    fn vertex(&self, k: u32) -> SurfaceVertex {
-        let t = k as f32 / f32::from(self.level);
-        let jet = self.curve.at(t);
-        let normal = self.normals.at(jet.derivative, t);
-        let [ta, tb] = self.tracing;
-        let radius = self.curve.radius(t);
-        let shown = if t < 0.5 && !self.is_of_end { ta } else { tb };
-        attributed(jet.position, normal, self.soma.unwrap_or(shown), radius)
-    }
-}
-
-/// What the inner vertices of a patch have in common.
-struct InnerVertices<'r> {
-    shape: PatchShape,
-    grid: Grid,
-    options: &'r RefineOptions,
-    /// By corner.
-    tracing: [&'r TracingPoint; 4],
-    /// As of an [edge](InnerEdge::is_of_end).
-    is_of_end: bool,
-    /// That of the soma, which all vertices of its patches show.
-    soma: Option<&'r TracingPoint>,
-}
-
-impl<'r> InnerVertices<'r> {
-    fn new(refinement: &'r Refinement<'_>, patch: usize) -> Self {
-        let Patch { corners, kind } = refinement.mesh.patches[patch];
-        let tracing = corners.map(|v| refinement.tracing(v));
-        let of_soma = |t: &&TracingPoint| kind == PatchKind::Soma && t.role == Role::Soma;
-        Self {
-            shape: refinement.shape(patch),
-            grid: refinement
-                .plan
-                .grid(refinement.mesh, &refinement.options, patch),
-            options: &refinement.options,
-            tracing,
-            is_of_end: match kind {
-                PatchKind::Loft => true,
-                PatchKind::Lateral => tracing[0].role == Role::Joint,
-                PatchKind::Cap | PatchKind::Soma => false,
-            },
-            soma: tracing.into_iter().find(of_soma),
+    /// Puts the inner vertices of edges of one kind and level into `out`, which begins with number `first`.
+    fn four_edges(&self, four: &Four, first: u32, out: &mut [SurfaceVertex]) {
+        let edges = four.all().map(|edge| &self.plan.edges[edge as usize]);
+        // Each kind needs other things of corners.
+        match edges[0].kind {
+            EdgeKind::Ring => self.four_edges_of(EdgeKind::Ring, edges, four.count(), first, out),
+            EdgeKind::Along => self.four_edges_of(EdgeKind::Along, edges, four.count(), first, out),
+            kind => self.four_edges_of(kind, edges, four.count(), first, out),
         }
     }
 
-    fn rows(&self) -> PatchRows<'_> {
-        self.shape.rows(self.options)
+    #[inline(always)]
+    fn four_edges_of(
+        &self,
+        kind: EdgeKind,
+        edges: [&Edge; 4],
+        count: usize,
+        first: u32,
+        out: &mut [SurfaceVertex],
+    ) {
+        let ends = Corners::of_edges(self.mesh, edges.map(Edge::ends));
+        let inner = InnerEdges::new(self.mesh, &self.options, kind, edges, &ends);
+        let starts = edges.map(|edge| edge.first.wrapping_sub(first) as usize);
+        for k in 1..u32::from(edges[0].level) {
+            for (start, vertex) in starts.into_iter().zip(inner.vertices(k)).take(count) {
+                out[start + k as usize - 1] = vertex;
+            }
+        }
     }
 
-    /// Points of row j of the grid.
-    fn row<'s>(&self, rows: &PatchRows<'s>, j: u32) -> PatchRow<'s> {
-        rows.at(j as f32 / self.grid.ny as f32)
+    /// Appends the inner vertices of patches.
+    fn patch_vertices(&self, patches: Range<usize>, out: &mut Vec<SurfaceVertex>) {
+        let (first, count) = self.plan.numbers_of_patches(&patches);
+        let start = out.len();
+        out.resize(start + count, SurfaceVertex::default());
+        let out = &mut out[start..];
+        let mut waiting = Fours::default();
+        for patch in patches {
+            let grid = self.plan.grid(self.mesh, &self.options, patch);
+            if grid.nx < 2 || grid.ny < 2 {
+                continue;
+            }
+            if self.mesh.patches[patch].kind != PatchKind::Lateral {
+                let start = self.plan.patch_first[patch].wrapping_sub(first) as usize;
+                let of = (&self.shape(patch), &grid);
+                other_vertices(self.mesh, &self.options, patch, of, |[i, j], vertex| {
+                    out[start + grid.inner(i, j)] = vertex;
+                });
+            } else if let Some(four) = waiting.add(grid.nx << 16 | grid.ny, patch as u32) {
+                self.four_patches(&four, first, out);
+            }
+        }
+        for four in waiting.rest() {
+            self.four_patches(&four, first, out);
+        }
     }
 
-    /// The vertex at column i of row j.
-    fn vertex(&self, row: &PatchRow<'_>, [i, j]: [u32; 2]) -> SurfaceVertex {
-        let (x, y) = (
-            i as f32 / self.grid.nx as f32,
-            j as f32 / self.grid.ny as f32,
-        );
-        let (position, normal) = row.point(x);
-        let is_second = y >= 0.5 || self.is_of_end;
-        let shown = usize::from(is_second) * 2 + usize::from((x >= 0.5) != is_second);
-        let radius = row.radius(x);
-        let tracing = self.soma.unwrap_or(self.tracing[shown]);
-        attributed(position, normal, tracing, radius)
-    }
-}
-
-fn attributed(position: Vec3, normal: Vec3, tracing: &TracingPoint, radius: f32) -> SurfaceVertex {
-    let TracingPoint {
-        kind,
-        sample,
-        section,
-        ..
-    } = *tracing;
-    SurfaceVertex {
-        position,
-        normal,
-        kind: kind.0,
-        point: sample.0,
-        section: section.0,
-        radius,
+    /// Puts the inner vertices of lateral patches with one grid into `out`, which begins with number `first`.
+    fn four_patches(&self, four: &Four, first: u32, out: &mut [SurfaceVertex]) {
+        let patches = four.all().map(|patch| patch as usize);
+        let grid = self.plan.grid(self.mesh, &self.options, patches[0]);
+        let starts = patches.map(|patch| self.plan.patch_first[patch].wrapping_sub(first) as usize);
+        let put = |[i, j]: [u32; 2], vertices: [SurfaceVertex; 4]| {
+            let place = grid.inner(i, j);
+            for (start, vertex) in starts.into_iter().zip(vertices).take(four.count()) {
+                out[start + place] = vertex;
+            }
+        };
+        lateral_vertices(self.mesh, &self.options, patches, &grid, put);
     }
 }
 
@@ -386,15 +312,12 @@ impl Surface for Refinement<'_> {
         let (corners, edges) = (self.mesh.vertices.len(), self.plan.edges.len());
         let (corner_blocks, edge_blocks) = (corners.div_ceil(BLOCK), edges.div_ceil(BLOCK));
         if block < corner_blocks {
-            out.extend(range(block, corners).map(|v| self.coarse_vertex(v)));
+            out.extend(range(block, corners).map(|v| coarse_vertex(self.mesh, v)));
         } else if block < corner_blocks + edge_blocks {
-            for edge in &self.plan.edges[range(block - corner_blocks, edges)] {
-                self.edge_vertices(edge, out);
-            }
+            self.edge_vertices(range(block - corner_blocks, edges), out);
         } else {
-            for patch in range(block - corner_blocks - edge_blocks, self.mesh.patches.len()) {
-                self.patch_vertices(patch, out);
-            }
+            let block = block - corner_blocks - edge_blocks;
+            self.patch_vertices(range(block, self.mesh.patches.len()), out);
         }
     }
 
