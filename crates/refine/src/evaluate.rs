@@ -29,6 +29,7 @@ mod tube;
 use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 
+use crate::fours::four;
 use crate::{Caps, Path, RefineOptions};
 pub(crate) use center_line::{CenterLines, MAX_SWAY, hermite_tangents};
 pub(crate) use corner::{Corners, Jets};
@@ -124,7 +125,7 @@ impl PatchShape {
 
     /// The radii at sides 0 and 2.
     fn radii(&self, x: F32x4) -> [F32x4; 2] {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| self.corners[k].radius);
+        let [a, b, c, d] = four(|k| self.corners[k].radius);
         [a * (1.0 - x) + b * x, d * (1.0 - x) + c * x]
     }
 
@@ -136,9 +137,8 @@ impl PatchShape {
         [nx, ny]: [u32; 2],
         mut put: impl FnMut([u32; 2], Points, F32x4),
     ) {
-        let from = |first: u32, n: u32| {
-            F32x4::from_array([0, 1, 2, 3].map(|k| (first + k) as f32 / n as f32))
-        };
+        let from =
+            |first: u32, n: u32| F32x4::from_array(four(|k| (first + k as u32) as f32 / n as f32));
         for i in (1..nx).step_by(4) {
             let x = from(i, nx);
             let columns = self.columns(options.path, x);
@@ -263,7 +263,7 @@ impl PatchShape {
     /// Bilinearly blended Coons patch between points of its sides. Its normal is that of the sides, the nearer one
     /// more: that of the surface jumps at the sides, which shows as lines where a ring pulls a soma out.
     fn coons(&self, [near, right, far, left]: [Vec3x4; 4], x: F32x4, y: F32x4) -> Vec3x4 {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| self.corners[k].position);
+        let [a, b, c, d] = four(|k| self.corners[k].position);
         mix(near, far, y) + mix(left, right, x) - mix(mix(a, b, x), mix(d, c, x), y)
     }
 

@@ -7,6 +7,7 @@ use crate::RefineOptions;
 use crate::evaluate::{
     Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes,
 };
+use crate::fours::four;
 use crate::plan::{Edge, Grid};
 
 /// What a vertex shows of the cell: type, sample and section of its tracing point.
@@ -44,7 +45,7 @@ impl Shown {
     /// What the quarters of a patch show, in the order of its corners.
     fn of_quarters(mesh: &CoarseMesh, patch: usize) -> [Self; 4] {
         let Patch { corners, kind } = mesh.patches[patch];
-        let points = corners.map(|v| tracing(mesh, v));
+        let points = four(|k| tracing(mesh, corners[k]));
         let [_, _, c, d] = points;
         let of_end = [d, c, c, d];
         let quarters = match kind {
@@ -56,7 +57,7 @@ impl Shown {
             }
             PatchKind::Lateral | PatchKind::Cap => points,
         };
-        quarters.map(Self::new)
+        four(|k| Self::new(quarters[k]))
     }
 
     #[inline(always)]
@@ -93,7 +94,7 @@ fn tracing(mesh: &CoarseMesh, vertex: u32) -> &TracingPoint {
 fn vertices(points: &Points, radii: F32x4, shown: [&Shown; 4]) -> [SurfaceVertex; 4] {
     let (positions, normals) = (points.position.each(), points.normal.each());
     let radii = radii.to_array();
-    [0, 1, 2, 3].map(|k: usize| shown[k].vertex(positions[k], normals[k], radii[k]))
+    four(|k| shown[k].vertex(positions[k], normals[k], radii[k]))
 }
 
 /// Inner vertices of four edges of one kind and level.
@@ -119,7 +120,7 @@ impl<'c> InnerEdges<'c> {
             curves: EdgeCurves::new(kind, a, b, options.path),
             normals: EdgeNormals::new(kind, a, b),
             level: edges[0].level,
-            shown: edges.map(|edge| Shown::of_halves(mesh, kind, edge)),
+            shown: four(|k| Shown::of_halves(mesh, kind, edges[k])),
         }
     }
 
@@ -134,7 +135,7 @@ impl<'c> InnerEdges<'c> {
             position: jets.position,
             normal: self.normals.at(jets.derivative, t),
         };
-        let shown = [0, 1, 2, 3].map(|k: usize| &self.shown[k][half]);
+        let shown = four(|k| &self.shown[k][half]);
         vertices(&points, self.curves.radius(t), shown)
     }
 }
@@ -160,8 +161,8 @@ pub(crate) fn lateral_vertices(
     grid: &Grid,
     mut put: impl FnMut([u32; 2], [SurfaceVertex; 4]),
 ) {
-    let corners = Corners::of_patches(mesh, patches.map(|patch| mesh.patches[patch].corners));
-    let shown = patches.map(|patch| Shown::of_quarters(mesh, patch));
+    let corners = Corners::of_patches(mesh, four(|k| mesh.patches[patches[k]].corners));
+    let shown = four(|k| Shown::of_quarters(mesh, patches[k]));
     let tubes = Tubes::new(&corners, options.path);
     for j in 1..grid.ny {
         let y = F32x4::splat(j as f32 / grid.ny as f32);
@@ -169,7 +170,7 @@ pub(crate) fn lateral_vertices(
         for i in 1..grid.nx {
             let points = row.points(F32x4::splat(i as f32 / grid.nx as f32));
             let quarter = quarter(grid, i, j);
-            let shown = [0, 1, 2, 3].map(|k: usize| &shown[k][quarter]);
+            let shown = four(|k| &shown[k][quarter]);
             put([i, j], vertices(&points, radius, shown));
         }
     }
@@ -185,7 +186,7 @@ pub(crate) fn other_vertices(
 ) {
     let shown = Shown::of_quarters(mesh, patch);
     shape.for_each_inside(options, [grid.nx, grid.ny], |[i, j], points, radii| {
-        let of = [0, 1, 2, 3].map(|k| &shown[quarter(grid, i + k, j)]);
+        let of = four(|k| &shown[quarter(grid, i + k as u32, j)]);
         for (i, vertex) in (i..grid.nx).zip(vertices(&points, radii, of)) {
             put([i, j], vertex);
         }

@@ -9,6 +9,7 @@ use crate::evaluate::{
     CenterLines, Corners, EdgeCurves, EdgeKind, F32x4, Profiles, Vec3x4, hermite_tangents,
     loft_controls, soma_controls,
 };
+use crate::fours::four;
 use crate::plan::Edge;
 use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
@@ -54,7 +55,7 @@ fn levels_of(
     kind: EdgeKind,
     edges: [&Edge; 4],
 ) -> [u32; 4] {
-    let ends = edges.map(Edge::ends);
+    let ends = four(|k| edges[k].ends());
     if let Some(rule) = lod.edges {
         return by_rule(mesh, rule, path, kind, ends);
     }
@@ -149,8 +150,7 @@ fn edge_length(kind: EdgeKind, a: &Corners, b: &Corners) -> F32x4 {
     if kind == EdgeKind::Ring {
         let radius = 0.5 * (a.offset.length() + b.offset.length());
         let (from, to) = (a.radial.each(), b.radial.each());
-        return radius
-            * F32x4::from_array([0, 1, 2, 3].map(|k: usize| from[k].angle_between(to[k])));
+        return radius * F32x4::from_array(four(|k| from[k].angle_between(to[k])));
     }
     (b.position - a.position).length()
 }

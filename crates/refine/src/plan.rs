@@ -10,7 +10,7 @@ use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
 use rayon::prelude::*;
 
 use crate::evaluate::{Corners, EdgeKind, SIDES};
-use crate::fours::{Four, Fours};
+use crate::fours::{Fours, four};
 use crate::level::{HIGHEST_LEVEL, bend, edge_levels};
 use crate::{Caps, Lod, Path, RefineOptions};
 
@@ -66,10 +66,10 @@ impl Plan {
     pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
         let (mut edges, patch_edges) = find_edges(mesh);
         edges.par_chunks_mut(MIN_EDGES).for_each(|edges| {
-            let set = |edges: &mut [Edge], four: Four| {
-                let of = four.all().map(|edge| &edges[edge as usize]);
-                let levels = edge_levels(mesh, lod, options.path, of);
-                for (edge, level) in four.all().into_iter().zip(levels) {
+            let set = |edges: &mut [Edge], of: [u32; 4]| {
+                let levels = four(|k| &edges[of[k] as usize]);
+                let levels = edge_levels(mesh, lod, options.path, levels);
+                for (edge, level) in of.into_iter().zip(levels) {
                     edges[edge as usize].level = level as u16;
                 }
             };

@@ -8,7 +8,7 @@ use neurotess_mesh::{CoarseMesh, Faces, PatchKind, Soundness, Surface, SurfaceVe
 use rayon::prelude::*;
 
 use crate::evaluate::{Corners, EdgeKind, PatchShape, SIDES};
-use crate::fours::{Four, Fours};
+use crate::fours::{Fours, four};
 use crate::inner::{InnerEdges, coarse_vertex, inner_vertex, lateral_vertices, other_vertices};
 use crate::plan::{Edge, Plan};
 use crate::{CoarseSurface, Lod, RefineOptions};
@@ -194,23 +194,23 @@ impl<'m> Refinement<'m> {
             if level > 1 {
                 let key = u32::from(level) << 8 | kind as u32;
                 if let Some(four) = waiting.add(key, edge as u32) {
-                    self.four_edges(&four, first, out);
+                    self.four_edges(four, first, out);
                 }
             }
         }
         for four in waiting.rest() {
-            self.four_edges(&four, first, out);
+            self.four_edges(four, first, out);
         }
     }
 
     /// Puts the inner vertices of edges of one kind and level into `out`, which begins with number `first`.
-    fn four_edges(&self, four: &Four, first: u32, out: &mut [SurfaceVertex]) {
-        let edges = four.all().map(|edge| &self.plan.edges[edge as usize]);
+    fn four_edges(&self, edges: [u32; 4], first: u32, out: &mut [SurfaceVertex]) {
+        let edges = four(|k| &self.plan.edges[edges[k] as usize]);
         // Each kind needs other things of corners.
         match edges[0].kind {
-            EdgeKind::Ring => self.four_edges_of(EdgeKind::Ring, edges, four.count(), first, out),
-            EdgeKind::Along => self.four_edges_of(EdgeKind::Along, edges, four.count(), first, out),
-            kind => self.four_edges_of(kind, edges, four.count(), first, out),
+            EdgeKind::Ring => self.four_edges_of(EdgeKind::Ring, edges, first, out),
+            EdgeKind::Along => self.four_edges_of(EdgeKind::Along, edges, first, out),
+            kind => self.four_edges_of(kind, edges, first, out),
         }
     }
 
@@ -219,17 +219,15 @@ impl<'m> Refinement<'m> {
         &self,
         kind: EdgeKind,
         edges: [&Edge; 4],
-        count: usize,
         first: u32,
         out: &mut [SurfaceVertex],
     ) {
-        let ends = Corners::of_edges(self.mesh, edges.map(Edge::ends));
+        let ends = Corners::of_edges(self.mesh, four(|k| edges[k].ends()));
         let inner = InnerEdges::new(self.mesh, &self.options, kind, edges, &ends);
-        let starts = edges.map(|edge| edge.first.wrapping_sub(first) as usize);
-        for k in 1..u32::from(edges[0].level) {
-            for (start, vertex) in starts.into_iter().zip(inner.vertices(k)).take(count) {
-                out[start + k as usize - 1] = vertex;
-            }
+        let starts = four(|k| edges[k].first.wrapping_sub(first) as usize);
+        for place in 0..usize::from(edges[0].level) - 1 {
+            let vertices = inner.vertices(place as u32 + 1);
+            put(out, four(|k| starts[k] + place), &vertices);
         }
     }
 
@@ -252,26 +250,30 @@ impl<'m> Refinement<'m> {
                     out[start + grid.inner(i, j)] = vertex;
                 });
             } else if let Some(four) = waiting.add(grid.nx << 16 | grid.ny, patch as u32) {
-                self.four_patches(&four, first, out);
+                self.four_patches(four, first, out);
             }
         }
         for four in waiting.rest() {
-            self.four_patches(&four, first, out);
+            self.four_patches(four, first, out);
         }
     }
 
     /// Puts the inner vertices of lateral patches with one grid into `out`, which begins with number `first`.
-    fn four_patches(&self, four: &Four, first: u32, out: &mut [SurfaceVertex]) {
-        let patches = four.all().map(|patch| patch as usize);
+    fn four_patches(&self, patches: [u32; 4], first: u32, out: &mut [SurfaceVertex]) {
+        let patches = four(|k| patches[k] as usize);
         let grid = self.plan.grid(self.mesh, &self.options, patches[0]);
-        let starts = patches.map(|patch| self.plan.patch_first[patch].wrapping_sub(first) as usize);
+        let starts = four(|k| self.plan.patch_first[patches[k]].wrapping_sub(first) as usize);
         let put = |[i, j]: [u32; 2], vertices: [SurfaceVertex; 4]| {
-            let place = grid.inner(i, j);
-            for (start, vertex) in starts.into_iter().zip(vertices).take(four.count()) {
-                out[start + place] = vertex;
-            }
+            put(out, four(|k| starts[k] + grid.inner(i, j)), &vertices);
         };
         lateral_vertices(self.mesh, &self.options, patches, &grid, put);
+    }
+}
+
+#[inline(always)]
+fn put(out: &mut [SurfaceVertex], places: [usize; 4], vertices: &[SurfaceVertex; 4]) {
+    for k in 0..4 {
+        out[places[k]] = vertices[k];
     }
 }
 

@@ -1,9 +1,9 @@
 //! Corners of patches, and points with derivatives: four at once.
 
-use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role};
 
 use super::four::{F32x4, Mask, Vec3x4};
+use crate::fours::four;
 
 /// Points of four curves or surfaces with their derivatives.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,14 +36,13 @@ pub(crate) struct Corners {
 impl Corners {
     #[inline(always)]
     pub(crate) fn new(mesh: &CoarseMesh, vertices: [u32; 4]) -> Self {
-        let vertices = vertices.map(|vertex| &mesh.vertices[vertex as usize]);
-        let points = vertices.map(|vertex| &mesh.tracing[vertex.tracing as usize]);
-        let vectors = |of: [Vec3; 4]| Vec3x4::new(of);
-        let position = vectors(vertices.map(|vertex| vertex.position));
-        let normal = vectors(vertices.map(|vertex| vertex.normal));
-        let center = vectors(points.map(|point| point.center));
+        let vertices = four(|k| &mesh.vertices[vertices[k] as usize]);
+        let points = four(|k| &mesh.tracing[vertices[k].tracing as usize]);
+        let position = Vec3x4::new(four(|k| vertices[k].position));
+        let normal = Vec3x4::new(four(|k| vertices[k].normal));
+        let center = Vec3x4::new(four(|k| points[k].center));
         let offset = position - center;
-        let role = points.map(|point| point.role);
+        let role = four(|k| points[k].role);
         // An inset follows the trunk's surface, so its corners' offsets lean; its tube must not.
         let radial = match has_any(role, Role::Inset) {
             false => offset.normalize_or(normal),
@@ -58,11 +57,11 @@ impl Corners {
             center,
             offset,
             radial,
-            tangent: vectors(points.map(|point| point.tangent)),
-            radius: points.map(|point| point.radius).into(),
-            taper: points.map(|point| point.taper).into(),
+            tangent: Vec3x4::new(four(|k| points[k].tangent)),
+            radius: four(|k| points[k].radius).into(),
+            taper: four(|k| points[k].taper).into(),
             role,
-            collar: points.map(|point| point.collar).into(),
+            collar: four(|k| points[k].collar).into(),
         }
     }
 
@@ -106,12 +105,12 @@ impl Corners {
 }
 
 fn has_any(roles: [Role; 4], role: Role) -> bool {
-    let [a, b, c, d] = roles.map(|of| of == role);
-    a | b | c | d
+    let [a, b, c, d] = roles;
+    (a == role) | (b == role) | (c == role) | (d == role)
 }
 
 #[inline(always)]
 pub(super) fn mask(roles: [Role; 4], is: impl Fn(Role) -> bool) -> Mask {
-    let [a, b, c, d] = roles.map(is);
-    Mask::new(a, b, c, d)
+    let [a, b, c, d] = roles;
+    Mask::new(is(a), is(b), is(c), is(d))
 }

@@ -7,6 +7,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::{BVec4A, Vec3, Vec4};
 
+use crate::fours::four;
+
 /// Four numbers.
 pub(crate) type F32x4 = Vec4;
 
@@ -45,8 +47,8 @@ impl Vec3x4 {
     /// One after the other.
     #[inline(always)]
     pub(crate) fn each(self) -> [Vec3; 4] {
-        let [x, y, z] = [self.x, self.y, self.z].map(|of| of.to_array());
-        [0, 1, 2, 3].map(|k: usize| Vec3::new(x[k], y[k], z[k]))
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        four(|k| Vec3::new(x[k], y[k], z[k]))
     }
 
     /// The k-th, four times.
