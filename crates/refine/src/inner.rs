@@ -19,6 +19,7 @@ struct Shown {
 }
 
 impl Shown {
+    #[inline(always)]
     fn new(point: &TracingPoint) -> Self {
         Self {
             kind: point.kind.0,
@@ -79,12 +80,14 @@ impl Shown {
 }
 
 /// A vertex of the coarse mesh.
+#[inline]
 pub(crate) fn coarse_vertex(mesh: &CoarseMesh, index: usize) -> SurfaceVertex {
     let vertex = &mesh.vertices[index];
     let tracing = tracing(mesh, index as u32);
     Shown::new(tracing).vertex(vertex.position, vertex.normal, tracing.radius)
 }
 
+#[inline(always)]
 fn tracing(mesh: &CoarseMesh, vertex: u32) -> &TracingPoint {
     &mesh.tracing[mesh.vertices[vertex as usize].tracing as usize]
 }

@@ -4,15 +4,19 @@
 //! direction, then the inner ones of every patch row by row. Memory grows with the coarse mesh
 //! only, not with the level.
 
+mod edges;
+
 use std::ops::Range;
 
-use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
+use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind};
 use rayon::prelude::*;
 
 use crate::evaluate::{Corners, EdgeKind, SIDES};
 use crate::fours::{Fours, four};
 use crate::level::{HIGHEST_LEVEL, bend, edge_levels};
 use crate::{Caps, Lod, Path, RefineOptions};
+use edges::find_edges;
+pub(crate) use edges::side_of;
 
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +38,10 @@ impl Edge {
     }
 }
 
-/// All edges, and the edges and inner vertices of each patch.
+/// All edges of the patches that are shown, and the edges and inner vertices of each of these.
 pub(crate) struct Plan {
+    /// All, without.
+    pub(crate) shown: Option<Vec<bool>>,
     pub(crate) edges: Vec<Edge>,
     pub(crate) patch_edges: Vec<[u32; 4]>,
     /// Number of the first inner vertex of each patch, as in [`Edge::first`].
@@ -46,11 +52,11 @@ pub(crate) struct Plan {
 }
 
 /// The grid of a patch: its columns and rows of cells, and the levels of its four sides.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Grid {
     pub(crate) nx: u32,
     pub(crate) ny: u32,
-    levels: [u32; 4],
+    pub(crate) levels: [u32; 4],
 }
 
 /// The first number of a range, and how many there are up to the next.
@@ -63,8 +69,14 @@ fn numbers(range: &Range<usize>, first: impl Fn(usize) -> u32) -> (u32, usize) {
 const MIN_EDGES: usize = 4096;
 
 impl Plan {
-    pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
-        let (mut edges, patch_edges) = find_edges(mesh);
+    /// `shown`: for each patch, or none where all are.
+    pub(crate) fn new(
+        mesh: &CoarseMesh,
+        lod: &Lod<'_>,
+        options: &RefineOptions,
+        shown: Option<Vec<bool>>,
+    ) -> Self {
+        let (mut edges, patch_edges) = find_edges(mesh, shown.as_deref());
         edges.par_chunks_mut(MIN_EDGES).for_each(|edges| {
             let set = |edges: &mut [Edge], of: [u32; 4]| {
                 let levels = four(|k| &edges[of[k] as usize]);
@@ -89,6 +101,7 @@ impl Plan {
             next += u64::from(edge.level) - 1;
         }
         let mut plan = Self {
+            shown,
             edges,
             patch_edges,
             patch_first: Vec::new(),
@@ -100,7 +113,7 @@ impl Plan {
         for patch in 0..mesh.patches.len() {
             let grid = plan.grid(mesh, options, patch);
             plan.patch_first.push(next as u32);
-            next += u64::from(grid.nx - 1) * u64::from(grid.ny - 1);
+            next += grid.inner_count();
             let (triangles, quads) = grid.face_counts(options.quads);
             plan.triangles += triangles;
             plan.quads += quads;
@@ -132,7 +145,12 @@ impl Plan {
         first.unwrap_or(self.vertices as u32)
     }
 
+    /// The grid of a patch. One that is hidden has no cells.
+    #[inline]
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
+        if self.shown.as_ref().is_some_and(|shown| !shown[patch]) {
+            return Grid::default();
+        }
         let [a, b, c, d] = self.patch_edges[patch];
         let level = |edge: u32| u32::from(self.edges[edge as usize].level);
         let levels = [level(a), level(b), level(c), level(d)];
@@ -188,6 +206,9 @@ impl Plan {
     ) {
         let Patch { corners, kind } = mesh.patches[patch];
         let grid = self.grid(mesh, options, patch);
+        if grid.nx == 0 {
+            return;
+        }
         if grid.nx == 1 && grid.ny == 1 {
             cell(corners, false, options.quads, out);
             return;
@@ -295,7 +316,7 @@ fn halves([a, b, c, d]: [u32; 4], falling: bool) -> [[u32; 3]; 2] {
 
 /// By patch: the greatest bound of the second derivative of its sides (µm), whatever the path.
 pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
-    let (edges, patch_edges) = find_edges(mesh);
+    let (edges, patch_edges) = find_edges(mesh, None);
     let bends: Vec<f32> = edges
         .iter()
         .map(|edge| {
@@ -318,6 +339,7 @@ pub fn patch_triangles(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> (u32, u
 }
 
 impl Grid {
+    #[inline]
     fn new(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> Self {
         let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
         if kind == PatchKind::Cap && caps == Caps::Round {
@@ -333,6 +355,10 @@ impl Grid {
         self.levels == [self.nx, self.ny, self.nx, self.ny]
     }
 
+    fn inner_count(&self) -> u64 {
+        u64::from(self.nx.saturating_sub(1)) * u64::from(self.ny.saturating_sub(1))
+    }
+
     /// Which of the inner vertices the one at column i of row j is.
     #[inline(always)]
     pub(crate) fn inner(&self, i: u32, j: u32) -> usize {
@@ -342,13 +368,9 @@ impl Grid {
     /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one
     /// triangle away.
     pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
-        let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
-        let empty: usize = self
-            .levels
-            .iter()
-            .zip([nx, ny, nx, ny])
-            .map(|(&l, n)| n - l as usize)
-            .sum();
+        let [nx, ny] = [self.nx as usize, self.ny as usize];
+        let steps: u32 = self.levels.iter().sum();
+        let empty = 2 * (nx + ny) - steps as usize;
         let triangles = 2 * nx * ny - empty;
         if !quads {
             return (triangles, 0);
@@ -367,86 +389,5 @@ impl Grid {
             }
         }
         (triangles - 2 * whole, whole)
-    }
-}
-
-/// Finds the edges, and those of every patch. Counts half-edges by their lower vertex: this needs
-/// no hashing, and sorts only the few edges of each vertex.
-fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
-    let ends = |patch: usize, side: usize| {
-        let corners = mesh.patches[patch].corners;
-        (corners[SIDES[side].0], corners[SIDES[side].1])
-    };
-    let mut start = vec![0_u32; mesh.vertices.len() + 1];
-    for patch in 0..mesh.patches.len() {
-        for side in 0..4 {
-            let (a, b) = ends(patch, side);
-            start[a.min(b) as usize + 1] += 1;
-        }
-    }
-    for i in 1..start.len() {
-        start[i] += start[i - 1];
-    }
-    let mut fill = start.clone();
-    let mut half_edges = vec![(0_u32, 0_u32); 4 * mesh.patches.len()];
-    for patch in 0..mesh.patches.len() {
-        for side in 0..4 {
-            let (a, b) = ends(patch, side);
-            let slot = &mut fill[a.min(b) as usize];
-            half_edges[*slot as usize] = (a.max(b), (4 * patch + side) as u32);
-            *slot += 1;
-        }
-    }
-    let mut edges = Vec::with_capacity(2 * mesh.patches.len());
-    let mut patch_edges = vec![[0_u32; 4]; mesh.patches.len()];
-    for v in 0..mesh.vertices.len() {
-        let bucket = &mut half_edges[start[v] as usize..start[v + 1] as usize];
-        bucket.sort_unstable();
-        let mut last = u32::MAX;
-        for &(high, half) in bucket.iter() {
-            let (patch, side) = (half as usize / 4, half as usize % 4);
-            if high != last {
-                edges.push(describe(mesh, patch, side));
-                last = high;
-            }
-            patch_edges[patch][side] = edges.len() as u32 - 1;
-        }
-    }
-    (edges, patch_edges)
-}
-
-/// Kind of a patch's side, and whether its edge runs against the patch's coordinate.
-pub(crate) fn side_of(mesh: &CoarseMesh, patch: usize, side: usize) -> (EdgeKind, bool) {
-    let edge = describe(mesh, patch, side);
-    let start = mesh.patches[patch].corners[SIDES[side].0];
-    (edge.kind, edge.from != start)
-}
-
-fn describe(mesh: &CoarseMesh, patch: usize, side: usize) -> Edge {
-    let Patch { corners, kind } = mesh.patches[patch];
-    let (a, b) = (corners[SIDES[side].0], corners[SIDES[side].1]);
-    let tracing = |v: u32| mesh.vertices[v as usize].tracing;
-    let role = |v: u32| mesh.tracing[tracing(v) as usize].role;
-    let around = tracing(a) == tracing(b) && role(a) != Role::Soma;
-    let edge_kind = match kind {
-        _ if around => EdgeKind::Ring,
-        PatchKind::Soma => EdgeKind::Soma,
-        PatchKind::Loft if side % 2 == 1 => EdgeKind::Loft,
-        // The side of a trunk's quad is as in the tube beside it, that of a soma's as in the soma.
-        PatchKind::Loft if role(a) != Role::Ordinary || role(b) != Role::Ordinary => EdgeKind::Soma,
-        PatchKind::Lateral | PatchKind::Cap | PatchKind::Loft => EdgeKind::Along,
-    };
-    // A path's rings are numbered along it, so a loft's side finds the direction of the tube beside it.
-    let (from, to) = match (edge_kind, kind) {
-        (EdgeKind::Loft, _) | (EdgeKind::Along, PatchKind::Lateral | PatchKind::Cap) => (a, b),
-        _ => (a.min(b), a.max(b)),
-    };
-    let kind = edge_kind;
-    Edge {
-        from,
-        to,
-        kind,
-        level: 1,
-        first: 0,
     }
 }

@@ -32,14 +32,39 @@ impl<'m> Refinement<'m> {
         Self {
             mesh,
             options: *options,
-            plan: Plan::new(mesh, &lod.into(), options),
+            plan: Plan::new(mesh, &lod.into(), options, None),
+        }
+    }
+
+    /// Plans the refinement of some patches: those that are `shown`; missing ones are hidden.
+    ///
+    /// Hidden patches have no faces and no inner vertices, and what only they touch is no edge. All else is as in the
+    /// whole surface, equal to the bit: levels depend on edges alone. The vertices of the coarse mesh are all there.
+    /// Such a surface is open, so it has no [`soundness`](Surface::soundness), and its volume means nothing.
+    pub fn of_patches<'l>(
+        mesh: &'m CoarseMesh,
+        lod: impl Into<Lod<'l>>,
+        options: &RefineOptions,
+        shown: &[bool],
+    ) -> Self {
+        let mut shown = shown.to_vec();
+        shown.resize(mesh.patches.len(), false);
+        Self {
+            mesh,
+            options: *options,
+            plan: Plan::new(mesh, &lod.into(), options, Some(shown)),
         }
     }
 
     /// Number of edges of the refined surface.
     pub fn edge_count(&self) -> usize {
-        // The mesh is closed: every edge has two faces.
-        (3 * self.plan.triangles + 4 * self.plan.quads) / 2
+        let sides = 3 * self.plan.triangles + 4 * self.plan.quads;
+        // Every edge has two faces, but for those between patches of which one is hidden.
+        let of_edges: usize = self.plan.edges.iter().map(|e| usize::from(e.level)).sum();
+        let patches = 0..self.mesh.patches.len();
+        let of_patch = |patch| self.patch_levels(patch).iter().sum::<u32>() as usize;
+        let of_patches: usize = patches.map(of_patch).sum();
+        (sides + 2 * of_edges - of_patches) / 2
     }
 
     /// Number of coarse edges by level, lowest first.
@@ -60,19 +85,19 @@ impl<'m> Refinement<'m> {
     }
 
     /// Levels of the four sides of a patch: the first and third are the sides along x at y = 0 and
-    /// 1, the second and fourth those along y at x = 1 and 0.
+    /// 1, the second and fourth those along y at x = 1 and 0. Those of a hidden patch are 0.
     pub fn patch_levels(&self, patch: usize) -> [u32; 4] {
-        self.plan.patch_edges[patch].map(|e| u32::from(self.plan.edges[e as usize].level))
+        self.plan.grid(self.mesh, &self.options, patch).levels
     }
 
-    /// Columns and rows of cells in the grid of a patch.
+    /// Columns and rows of cells in the grid of a patch; none of a hidden one.
     pub fn patch_grid(&self, patch: usize) -> (u32, u32) {
         let grid = self.plan.grid(self.mesh, &self.options, patch);
         (grid.nx, grid.ny)
     }
 
     /// The vertex at column i and row j of a patch's grid. On a coarser side several columns or
-    /// rows have the same vertex. The GPU must compute the same.
+    /// rows have the same vertex. The GPU must compute the same. Not for hidden patches.
     pub fn grid_vertex(&self, patch: usize, i: u32, j: u32) -> SurfaceVertex {
         let corners = self.mesh.patches[patch].corners;
         let grid = self.plan.grid(self.mesh, &self.options, patch);
@@ -132,6 +157,9 @@ impl<'m> Refinement<'m> {
         positions: &mut Vec<(u32, DVec3)>,
         sum: &mut (f64, f64),
     ) {
+        if faces.triangles.is_empty() && faces.quads.is_empty() {
+            return;
+        }
         let corners = self.mesh.patches[patch].corners;
         positions.clear();
         let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
@@ -283,7 +311,11 @@ impl Surface for Refinement<'_> {
     }
 
     fn soundness(&self) -> Option<Soundness> {
-        CoarseSurface::new(self.mesh, true).soundness()
+        // What is open has no volume.
+        match self.plan.shown {
+            Some(_) => None,
+            None => CoarseSurface::new(self.mesh, true).soundness(),
+        }
     }
 
     fn vertex_count(&self) -> usize {
