@@ -1,7 +1,7 @@
 //! The inner vertices of edges and patches, four edges or patches of a kind at once.
 
 use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, TracingPoint};
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, TracingPoint, Vertex};
 
 use crate::RefineOptions;
 use crate::evaluate::{
@@ -29,6 +29,7 @@ impl Shown {
     }
 
     /// What the halves of an edge show.
+    #[inline(always)]
     fn of_halves(mesh: &CoarseMesh, kind: EdgeKind, edge: &Edge) -> [Self; 2] {
         let [start, end] = [tracing(mesh, edge.from), tracing(mesh, edge.to)];
         let [near, far] = match kind {
@@ -44,6 +45,7 @@ impl Shown {
     }
 
     /// What the quarters of a patch show, in the order of its corners.
+    #[inline]
     fn of_quarters(mesh: &CoarseMesh, patch: usize) -> [Self; 4] {
         let Patch { corners, kind } = mesh.patches[patch];
         let points = four(|k| tracing(mesh, corners[k]));
@@ -81,9 +83,8 @@ impl Shown {
 
 /// A vertex of the coarse mesh.
 #[inline]
-pub(crate) fn coarse_vertex(mesh: &CoarseMesh, index: usize) -> SurfaceVertex {
-    let vertex = &mesh.vertices[index];
-    let tracing = tracing(mesh, index as u32);
+pub(crate) fn coarse_vertex(mesh: &CoarseMesh, vertex: &Vertex) -> SurfaceVertex {
+    let tracing = &mesh.tracing[vertex.tracing as usize];
     Shown::new(tracing).vertex(vertex.position, vertex.normal, tracing.radius)
 }
 

@@ -146,7 +146,7 @@ impl Plan {
     }
 
     /// The grid of a patch. One that is hidden has no cells.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
         if self.shown.as_ref().is_some_and(|shown| !shown[patch]) {
             return Grid::default();
@@ -243,17 +243,22 @@ impl Plan {
     fn numbers(&self, corners: [u32; 4], patch: usize, grid: &Grid, rows: &mut Vec<u32>) {
         let side = |side: usize| self.side(corners, patch, grid, side);
         let (near, right, far, left) = (side(0), side(1), side(2), side(3));
-        rows.clear();
-        rows.extend((0..=grid.nx).map(|i| near.number(i)));
-        let mut first = self.patch_first[patch];
-        for j in 1..grid.ny {
-            let next = first.wrapping_add(grid.nx - 1);
-            rows.push(left.number(j));
-            rows.extend(first..next);
-            rows.push(right.number(j));
-            first = next;
+        let width = grid.nx as usize + 1;
+        // All are written below.
+        rows.resize(width * (grid.ny as usize + 1), 0);
+        let (first, rest) = rows.split_at_mut(width);
+        let (inner, last) = rest.split_at_mut(rest.len() - width);
+        near.fill(first);
+        far.fill(last);
+        let mut next = self.patch_first[patch];
+        for (j, row) in (1..).zip(inner.chunks_exact_mut(width)) {
+            row[0] = left.number(j);
+            for number in &mut row[1..width - 1] {
+                *number = next;
+                next = next.wrapping_add(1);
+            }
+            row[width - 1] = right.number(j);
         }
-        rows.extend((0..=grid.nx).map(|i| far.number(i)));
     }
 }
 
@@ -269,6 +274,14 @@ struct Side {
 }
 
 impl Side {
+    /// Sets the numbers of the vertices at all columns of the patch's grid.
+    #[inline(always)]
+    fn fill(&self, out: &mut [u32]) {
+        for (i, number) in (0..).zip(out) {
+            *number = self.number(i);
+        }
+    }
+
     /// Number of the vertex at a column or row of the patch's grid.
     #[inline(always)]
     fn number(&self, place: u32) -> u32 {
@@ -339,7 +352,7 @@ pub fn patch_triangles(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> (u32, u
 }
 
 impl Grid {
-    #[inline]
+    #[inline(always)]
     fn new(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> Self {
         let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
         if kind == PatchKind::Cap && caps == Caps::Round {

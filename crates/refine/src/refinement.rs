@@ -116,7 +116,7 @@ impl<'m> Refinement<'m> {
         };
         let edges = &self.plan.patch_edges[patch];
         let found = edges.iter().find_map(on_edge);
-        found.unwrap_or_else(|| coarse_vertex(self.mesh, index as usize))
+        found.unwrap_or_else(|| coarse_vertex(self.mesh, &self.mesh.vertices[index as usize]))
     }
 
     /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
@@ -346,7 +346,12 @@ impl Surface for Refinement<'_> {
         let (corners, edges) = (self.mesh.vertices.len(), self.plan.edges.len());
         let (corner_blocks, edge_blocks) = (corners.div_ceil(BLOCK), edges.div_ceil(BLOCK));
         if block < corner_blocks {
-            out.extend(range(block, corners).map(|v| coarse_vertex(self.mesh, v)));
+            let vertices = &self.mesh.vertices[range(block, corners)];
+            out.extend(
+                vertices
+                    .iter()
+                    .map(|vertex| coarse_vertex(self.mesh, vertex)),
+            );
         } else if block < corner_blocks + edge_blocks {
             self.edge_vertices(range(block - corner_blocks, edges), out);
         } else {

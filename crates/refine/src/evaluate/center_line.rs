@@ -80,11 +80,17 @@ pub(crate) fn hermite_tangents(a: &Corners, b: &Corners) -> (Vec3x4, Vec3x4) {
     let length = way.length();
     let direction = way / length.max(F32x4::splat(f32::MIN_POSITIVE));
     let most = MAX_SWAY * a.radius.min(b.radius) * (27.0 / 4.0);
-    let tangent = |corner: &Corners| {
-        let across = corner.tangent - direction * corner.tangent.dot(direction);
-        let sway = across.length() * length;
-        let own = corner.tangent * (length * (most / sway.max(most)));
-        Vec3x4::select(corner.has_role(Role::Joint), way, own)
-    };
-    (tangent(a), tangent(b))
+    let at_joint = |corner: &Corners| corner.has_role(Role::Joint);
+    (
+        Vec3x4::select(at_joint(a), way, tangent(a, length, direction, most)),
+        Vec3x4::select(at_joint(b), way, tangent(b, length, direction, most)),
+    )
+}
+
+/// `most`: greatest sway times 27/4.
+#[inline(always)]
+fn tangent(corner: &Corners, length: F32x4, direction: Vec3x4, most: F32x4) -> Vec3x4 {
+    let across = corner.tangent - direction * corner.tangent.dot(direction);
+    let sway = across.length() * length;
+    corner.tangent * (length * (most / sway.max(most)))
 }
