@@ -94,8 +94,10 @@ impl Profiles {
 /// Slopes as those of monotone cubics between values that are `way` apart.
 fn limited(slope: F32x4, way: F32x4) -> F32x4 {
     let most = STEEPEST_PROFILE * way;
-    // In this order also where it is not a number.
-    slope.max(most.min(F32x4::ZERO)).min(most.max(F32x4::ZERO))
+    let (least, greatest) = (most.min(F32x4::ZERO), most.max(F32x4::ZERO));
+    // Not by `max`, so that what is not a number is the least on all processors.
+    let steep = F32x4::select(slope.cmpgt(least), slope, least);
+    steep.min(greatest)
 }
 
 impl Corners {
