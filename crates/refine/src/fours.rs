@@ -1,19 +1,25 @@
 //! Things of one kind are evaluated four at once: a queue for each kind.
 
 /// By kind, up to three things that wait for others.
-#[derive(Debug, Default)]
-pub(crate) struct Fours(Vec<Waiting>);
+#[derive(Debug)]
+pub(crate) struct Fours<T>(Vec<Waiting<T>>);
 
 #[derive(Debug)]
-struct Waiting {
+struct Waiting<T> {
     kind: u32,
-    things: [u32; 4],
+    things: [T; 4],
     count: usize,
 }
 
-impl Fours {
+impl<T> Default for Fours<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T: Copy> Fours<T> {
     /// Adds a thing of a kind. Returns four as soon as there are four of the kind.
-    pub(crate) fn add(&mut self, kind: u32, thing: u32) -> Option<[u32; 4]> {
+    pub(crate) fn add(&mut self, kind: u32, thing: T) -> Option<[T; 4]> {
         let Some(at) = self.0.iter().position(|waiting| waiting.kind == kind) else {
             self.0.push(Waiting {
                 kind,
@@ -30,7 +36,7 @@ impl Fours {
 
     /// Those that still wait. The first of a kind stands in for those that are missing: it is evaluated several times,
     /// with the same result.
-    pub(crate) fn rest(self) -> impl Iterator<Item = [u32; 4]> {
+    pub(crate) fn rest(self) -> impl Iterator<Item = [T; 4]> {
         self.0.into_iter().map(|waiting| waiting.things)
     }
 }

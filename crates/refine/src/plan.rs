@@ -8,7 +8,7 @@ mod edges;
 
 use std::ops::Range;
 
-use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind};
+use neurotess_mesh::{CoarseMesh, Faces, PatchKind};
 use rayon::prelude::*;
 
 use crate::evaluate::{Corners, EdgeKind, SIDES};
@@ -51,6 +51,14 @@ pub(crate) struct Plan {
     pub(crate) quads: usize,
 }
 
+/// Numbers of a patch's corners, of the first inner vertices of its sides' edges and of its own first inner vertex.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Numbers {
+    pub(crate) corners: [u32; 4],
+    pub(crate) edges: [u32; 4],
+    pub(crate) inner: u32,
+}
+
 /// The grid of a patch: its columns and rows of cells, and the levels of its four sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Grid {
@@ -85,7 +93,7 @@ impl Plan {
                     edges[edge as usize].level = level as u16;
                 }
             };
-            let mut waiting = Fours::default();
+            let mut waiting = Fours::<u32>::default();
             for edge in 0..edges.len() {
                 if let Some(four) = waiting.add(edges[edge].kind as u32, edge as u32) {
                     set(edges, four);
@@ -161,33 +169,53 @@ impl Plan {
     /// of its edge: where the edge has fewer, several columns share one.
     pub(crate) fn vertex(
         &self,
-        corners: [u32; 4],
+        mesh: &CoarseMesh,
         patch: usize,
         grid: &Grid,
-        i: u32,
-        j: u32,
+        [i, j]: [u32; 2],
     ) -> u32 {
-        let side = |side: usize| self.side(corners, patch, grid, side);
+        let numbers = self.numbers(mesh, patch);
+        let side = |side: usize| self.side(mesh, patch, grid, &numbers, side);
         match (i, j) {
             (i, 0) => side(0).number(i),
             (i, j) if j == grid.ny => side(2).number(i),
             (0, j) => side(3).number(j),
             (i, j) if i == grid.nx => side(1).number(j),
-            (i, j) => self.patch_first[patch].wrapping_add(grid.inner(i, j) as u32),
+            (i, j) => numbers.inner.wrapping_add(grid.inner(i, j) as u32),
+        }
+    }
+
+    /// The numbers that a patch's vertices have in the surface.
+    #[inline(always)]
+    pub(crate) fn numbers(&self, mesh: &CoarseMesh, patch: usize) -> Numbers {
+        let [a, b, c, d] = self.patch_edges[patch];
+        let first = |edge: u32| self.edges.get(edge as usize).map_or(0, |edge| edge.first);
+        Numbers {
+            corners: mesh.patches[patch].corners,
+            edges: [first(a), first(b), first(c), first(d)],
+            inner: self.patch_first[patch],
         }
     }
 
     #[inline(always)]
-    fn side(&self, corners: [u32; 4], patch: usize, grid: &Grid, side: usize) -> Side {
+    fn side(
+        &self,
+        mesh: &CoarseMesh,
+        patch: usize,
+        grid: &Grid,
+        numbers: &Numbers,
+        side: usize,
+    ) -> Side {
+        let (start, end) = SIDES[side];
         let edge = &self.edges[self.patch_edges[patch][side] as usize];
-        let (start, end) = (corners[SIDES[side].0], corners[SIDES[side].1]);
+        let first = numbers.edges[side];
         let level = grid.levels[side];
-        let (before, step) = match edge.from == start {
-            true => (edge.first.wrapping_sub(1), 1),
-            false => (edge.first.wrapping_add(level - 1), u32::MAX),
+        let (before, step) = match edge.from == mesh.patches[patch].corners[start] {
+            true => (first.wrapping_sub(1), 1),
+            false => (first.wrapping_add(level - 1), u32::MAX),
         };
         Side {
-            ends: [start, end],
+            ends: [numbers.corners[start], numbers.corners[end]],
             level,
             steps: [grid.nx, grid.ny][side % 2],
             before,
@@ -195,27 +223,27 @@ impl Plan {
         }
     }
 
-    /// Appends the faces of a patch. `rows`: room for the numbers of its vertices, to be used again.
+    /// Appends the faces of a patch whose vertices have these numbers. `rows`: room for all of them, to be used again.
     pub(crate) fn faces(
         &self,
         mesh: &CoarseMesh,
         options: &RefineOptions,
         patch: usize,
+        numbers: &Numbers,
         rows: &mut Vec<u32>,
         out: &mut Faces,
     ) {
-        let Patch { corners, kind } = mesh.patches[patch];
         let grid = self.grid(mesh, options, patch);
         if grid.nx == 0 {
             return;
         }
         if grid.nx == 1 && grid.ny == 1 {
-            cell(corners, false, options.quads, out);
+            cell(numbers.corners, false, options.quads, out);
             return;
         }
         // Up to four cells share a vertex: its number is found once.
-        self.numbers(corners, patch, &grid, rows);
-        let fans = kind != PatchKind::Lateral;
+        self.number(mesh, patch, &grid, numbers, rows);
+        let fans = mesh.patches[patch].kind != PatchKind::Lateral;
         let width = grid.nx as usize + 1;
         let is_whole = !options.quads && grid.is_whole();
         let pairs = rows.chunks(width).zip(rows[width..].chunks(width));
@@ -240,8 +268,15 @@ impl Plan {
     }
 
     /// The numbers of all vertices of a patch's grid, row by row.
-    fn numbers(&self, corners: [u32; 4], patch: usize, grid: &Grid, rows: &mut Vec<u32>) {
-        let side = |side: usize| self.side(corners, patch, grid, side);
+    fn number(
+        &self,
+        mesh: &CoarseMesh,
+        patch: usize,
+        grid: &Grid,
+        numbers: &Numbers,
+        rows: &mut Vec<u32>,
+    ) {
+        let side = |side: usize| self.side(mesh, patch, grid, numbers, side);
         let (near, right, far, left) = (side(0), side(1), side(2), side(3));
         let width = grid.nx as usize + 1;
         // All are written below.
@@ -250,7 +285,7 @@ impl Plan {
         let (inner, last) = rest.split_at_mut(rest.len() - width);
         near.fill(first);
         far.fill(last);
-        let mut next = self.patch_first[patch];
+        let mut next = numbers.inner;
         for (j, row) in (1..).zip(inner.chunks_exact_mut(width)) {
             row[0] = left.number(j);
             for number in &mut row[1..width - 1] {
@@ -368,7 +403,7 @@ impl Grid {
         self.levels == [self.nx, self.ny, self.nx, self.ny]
     }
 
-    fn inner_count(&self) -> u64 {
+    pub(crate) fn inner_count(&self) -> u64 {
         u64::from(self.nx.saturating_sub(1)) * u64::from(self.ny.saturating_sub(1))
     }
 

@@ -1,11 +1,9 @@
 //! The refined surface, evaluated block by block from the coarse mesh.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use neurotess_mesh::{CoarseMesh, Faces, PatchKind, Soundness, Surface, SurfaceVertex};
-use rayon::prelude::*;
 
 use crate::evaluate::{Corners, EdgeKind, PatchShape, SIDES};
 use crate::fours::{Fours, four};
@@ -16,13 +14,13 @@ use crate::{CoarseSurface, Lod, RefineOptions};
 /// A coarse mesh with levels: a [`Surface`] that holds no refined vertices. Its blocks are
 /// evaluated when they are read, so that memory does not grow with the level.
 pub struct Refinement<'m> {
-    mesh: &'m CoarseMesh,
-    options: RefineOptions,
-    plan: Plan,
+    pub(crate) mesh: &'m CoarseMesh,
+    pub(crate) options: RefineOptions,
+    pub(crate) plan: Plan,
 }
 
 /// Coarse vertices, edges or patches in one block.
-const BLOCK: usize = 1024;
+pub(crate) const BLOCK: usize = 1024;
 
 impl<'m> Refinement<'m> {
     /// Plans the refinement of a closed mesh.
@@ -99,9 +97,8 @@ impl<'m> Refinement<'m> {
     /// The vertex at column i and row j of a patch's grid. On a coarser side several columns or
     /// rows have the same vertex. The GPU must compute the same. Not for hidden patches.
     pub fn grid_vertex(&self, patch: usize, i: u32, j: u32) -> SurfaceVertex {
-        let corners = self.mesh.patches[patch].corners;
         let grid = self.plan.grid(self.mesh, &self.options, patch);
-        let index = self.plan.vertex(corners, patch, &grid, i, j);
+        let index = self.plan.vertex(self.mesh, patch, &grid, [i, j]);
         if let Some(inner) = index.checked_sub(self.plan.patch_first[patch]) {
             let (x, y) = (inner % (grid.nx - 1) + 1, inner / (grid.nx - 1) + 1);
             let of = (&self.shape(patch), &grid);
@@ -117,81 +114,6 @@ impl<'m> Refinement<'m> {
         let edges = &self.plan.patch_edges[patch];
         let found = edges.iter().find_map(on_edge);
         found.unwrap_or_else(|| coarse_vertex(self.mesh, &self.mesh.vertices[index as usize]))
-    }
-
-    /// Volume (µm³) and area (µm²) of the refined surface. Evaluates the whole surface, on all
-    /// cores.
-    pub fn volume_and_area(&self) -> (f64, f64) {
-        let center = self
-            .mesh
-            .vertices
-            .first()
-            .map_or(Vec3::ZERO, |v| v.position);
-        let blocks = self.mesh.patches.len().div_ceil(BLOCK);
-        let sums: Vec<(f64, f64)> = (0..blocks)
-            .into_par_iter()
-            .map(|block| {
-                let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
-                let mut faces = Faces::default();
-                let mut sum = (0.0, 0.0);
-                let mut positions = Vec::new();
-                let mut rows = Vec::new();
-                for patch in block * BLOCK..end {
-                    faces.triangles.clear();
-                    faces.quads.clear();
-                    let plan = &self.plan;
-                    plan.faces(self.mesh, &self.options, patch, &mut rows, &mut faces);
-                    self.measure_patch(patch, center, &faces, &mut positions, &mut sum);
-                }
-                sum
-            })
-            .collect();
-        sums.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1))
-    }
-
-    fn measure_patch(
-        &self,
-        patch: usize,
-        center: Vec3,
-        faces: &Faces,
-        positions: &mut Vec<(u32, DVec3)>,
-        sum: &mut (f64, f64),
-    ) {
-        if faces.triangles.is_empty() && faces.quads.is_empty() {
-            return;
-        }
-        let corners = self.mesh.patches[patch].corners;
-        positions.clear();
-        let mut add = |index: u32, p: Vec3| positions.push((index, (p - center).as_dvec3()));
-        for v in corners {
-            add(v, self.mesh.vertices[v as usize].position);
-        }
-        for e in self.plan.patch_edges[patch] {
-            let edge = &self.plan.edges[e as usize];
-            for k in 1..u32::from(edge.level) {
-                add(edge.first + k - 1, self.edge_vertex(edge, k).position);
-            }
-        }
-        let mut inner = Vec::new();
-        self.patch_vertices(patch..patch + 1, &mut inner);
-        for (index, vertex) in (self.plan.patch_first[patch]..).zip(&inner) {
-            add(index, vertex.position);
-        }
-        positions.sort_unstable_by_key(|&(index, _)| index);
-        let at = |index: u32| {
-            let found = positions.binary_search_by_key(&index, |&(i, _)| i);
-            positions[found.expect("all vertices of the patch are listed")].1
-        };
-        let halves = faces
-            .quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        for [a, b, c] in faces.triangles.iter().copied().chain(halves) {
-            let [a, b, c] = [a, b, c].map(at);
-            let cross = (b - a).cross(c - a);
-            sum.0 += a.dot(cross) / 6.0;
-            sum.1 += 0.5 * cross.length();
-        }
     }
 
     fn shape(&self, patch: usize) -> PatchShape {
@@ -210,35 +132,36 @@ impl<'m> Refinement<'m> {
         inner.vertices(k)[0]
     }
 
-    /// Appends the inner vertices of edges.
-    fn edge_vertices(&self, edges: Range<usize>, out: &mut Vec<SurfaceVertex>) {
-        let (first, count) = self.plan.numbers_of_edges(&edges);
-        let start = out.len();
-        out.resize(start + count, SurfaceVertex::default());
-        let out = &mut out[start..];
+    /// Puts the inner vertices of edges into `out`, those of each from a place on.
+    pub(crate) fn edge_vertices(
+        &self,
+        edges: impl IntoIterator<Item = (u32, usize)>,
+        out: &mut [SurfaceVertex],
+    ) {
         let mut waiting = Fours::default();
-        for edge in edges {
-            let Edge { kind, level, .. } = self.plan.edges[edge];
+        for (edge, start) in edges {
+            let Edge { kind, level, .. } = self.plan.edges[edge as usize];
             if level > 1 {
                 let key = u32::from(level) << 8 | kind as u32;
-                if let Some(four) = waiting.add(key, edge as u32) {
-                    self.four_edges(four, first, out);
+                if let Some(four) = waiting.add(key, (edge, start)) {
+                    self.four_edges(four, out);
                 }
             }
         }
         for four in waiting.rest() {
-            self.four_edges(four, first, out);
+            self.four_edges(four, out);
         }
     }
 
-    /// Puts the inner vertices of edges of one kind and level into `out`, which begins with number `first`.
-    fn four_edges(&self, edges: [u32; 4], first: u32, out: &mut [SurfaceVertex]) {
-        let edges = four(|k| &self.plan.edges[edges[k] as usize]);
+    /// The same for four of one kind and level.
+    fn four_edges(&self, things: [(u32, usize); 4], out: &mut [SurfaceVertex]) {
+        let edges = four(|k| &self.plan.edges[things[k].0 as usize]);
+        let starts = four(|k| things[k].1);
         // Each kind needs other things of corners.
         match edges[0].kind {
-            EdgeKind::Ring => self.four_edges_of(EdgeKind::Ring, edges, first, out),
-            EdgeKind::Along => self.four_edges_of(EdgeKind::Along, edges, first, out),
-            kind => self.four_edges_of(kind, edges, first, out),
+            EdgeKind::Ring => self.four_edges_of(EdgeKind::Ring, edges, starts, out),
+            EdgeKind::Along => self.four_edges_of(EdgeKind::Along, edges, starts, out),
+            kind => self.four_edges_of(kind, edges, starts, out),
         }
     }
 
@@ -247,55 +170,61 @@ impl<'m> Refinement<'m> {
         &self,
         kind: EdgeKind,
         edges: [&Edge; 4],
-        first: u32,
+        starts: [usize; 4],
         out: &mut [SurfaceVertex],
     ) {
         let ends = Corners::of_edges(self.mesh, four(|k| edges[k].ends()));
         let inner = InnerEdges::new(self.mesh, &self.options, kind, edges, &ends);
-        let starts = four(|k| edges[k].first.wrapping_sub(first) as usize);
         for place in 0..usize::from(edges[0].level) - 1 {
             let vertices = inner.vertices(place as u32 + 1);
             put(out, four(|k| starts[k] + place), &vertices);
         }
     }
 
-    /// Appends the inner vertices of patches.
-    fn patch_vertices(&self, patches: Range<usize>, out: &mut Vec<SurfaceVertex>) {
-        let (first, count) = self.plan.numbers_of_patches(&patches);
-        let start = out.len();
-        out.resize(start + count, SurfaceVertex::default());
-        let out = &mut out[start..];
+    /// Puts the inner vertices of patches into `out`, those of each from a place on.
+    pub(crate) fn patch_vertices(
+        &self,
+        patches: impl IntoIterator<Item = (u32, usize)>,
+        out: &mut [SurfaceVertex],
+    ) {
         let mut waiting = Fours::default();
-        for patch in patches {
+        for (of, start) in patches {
+            let patch = of as usize;
             let grid = self.plan.grid(self.mesh, &self.options, patch);
             if grid.nx < 2 || grid.ny < 2 {
                 continue;
             }
             if self.mesh.patches[patch].kind != PatchKind::Lateral {
-                let start = self.plan.patch_first[patch].wrapping_sub(first) as usize;
                 let of = (&self.shape(patch), &grid);
                 other_vertices(self.mesh, &self.options, patch, of, |[i, j], vertex| {
                     out[start + grid.inner(i, j)] = vertex;
                 });
-            } else if let Some(four) = waiting.add(grid.nx << 16 | grid.ny, patch as u32) {
-                self.four_patches(four, first, out);
+            } else if let Some(four) = waiting.add(grid.nx << 16 | grid.ny, (of, start)) {
+                self.four_patches(four, out);
             }
         }
         for four in waiting.rest() {
-            self.four_patches(four, first, out);
+            self.four_patches(four, out);
         }
     }
 
-    /// Puts the inner vertices of lateral patches with one grid into `out`, which begins with number `first`.
-    fn four_patches(&self, patches: [u32; 4], first: u32, out: &mut [SurfaceVertex]) {
-        let patches = four(|k| patches[k] as usize);
+    /// The same for four lateral ones with one grid.
+    fn four_patches(&self, things: [(u32, usize); 4], out: &mut [SurfaceVertex]) {
+        let patches = four(|k| things[k].0 as usize);
         let grid = self.plan.grid(self.mesh, &self.options, patches[0]);
-        let starts = four(|k| self.plan.patch_first[patches[k]].wrapping_sub(first) as usize);
         let put = |[i, j]: [u32; 2], vertices: [SurfaceVertex; 4]| {
-            put(out, four(|k| starts[k] + grid.inner(i, j)), &vertices);
+            let place = grid.inner(i, j);
+            put(out, four(|k| things[k].1 + place), &vertices);
         };
         lateral_vertices(self.mesh, &self.options, patches, &grid, put);
     }
+}
+
+/// Appends room for vertices.
+fn room(out: &mut Vec<SurfaceVertex>, count: usize) -> &mut [SurfaceVertex] {
+    let start = out.len();
+    out.resize(start + count, SurfaceVertex::default());
+    &mut out[start..]
 }
 
 #[inline(always)]
@@ -353,10 +282,17 @@ impl Surface for Refinement<'_> {
                     .map(|vertex| coarse_vertex(self.mesh, vertex)),
             );
         } else if block < corner_blocks + edge_blocks {
-            self.edge_vertices(range(block - corner_blocks, edges), out);
+            let edges = range(block - corner_blocks, edges);
+            let (first, count) = self.plan.numbers_of_edges(&edges);
+            let out = room(out, count);
+            let start = |e: usize| self.plan.edges[e].first.wrapping_sub(first) as usize;
+            self.edge_vertices(edges.map(|e| (e as u32, start(e))), out);
         } else {
-            let block = block - corner_blocks - edge_blocks;
-            self.patch_vertices(range(block, self.mesh.patches.len()), out);
+            let patches = range(block - corner_blocks - edge_blocks, self.mesh.patches.len());
+            let (first, count) = self.plan.numbers_of_patches(&patches);
+            let out = room(out, count);
+            let start = |p: usize| self.plan.patch_first[p].wrapping_sub(first) as usize;
+            self.patch_vertices(patches.map(|p| (p as u32, start(p))), out);
         }
     }
 
@@ -368,8 +304,10 @@ impl Surface for Refinement<'_> {
         let end = ((block + 1) * BLOCK).min(self.mesh.patches.len());
         let mut rows = Vec::new();
         for patch in block * BLOCK..end {
-            let plan = &self.plan;
-            plan.faces(self.mesh, &self.options, patch, &mut rows, out);
+            let numbers = self.plan.numbers(self.mesh, patch);
+            let (mesh, options) = (self.mesh, &self.options);
+            self.plan
+                .faces(mesh, options, patch, &numbers, &mut rows, out);
         }
     }
 }

@@ -5,7 +5,9 @@ use std::collections::HashSet;
 use crate::trees::{Twig, grow};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface, SurfaceMesh, SurfaceVertex};
-use neurotess_refine::{EdgeRule, Lod, LodCriterion, LodView, RefineOptions, Refinement};
+use neurotess_refine::{
+    EdgeRule, Lod, LodCriterion, LodView, PatchBlock, RefineOptions, Refinement,
+};
 
 /// A soma with branches and twigs on them: patches of all kinds.
 fn mesh() -> CoarseMesh {
@@ -142,6 +144,36 @@ fn vertices_are_the_same_one_by_one() {
             let places = (0..=ny).flat_map(|j| (0..=nx).map(move |i| (i, j)));
             let alone = places.map(|(i, j)| bits(&refinement.grid_vertex(patch, i, j)));
             assert_eq!(alone.collect::<HashSet<_>>(), together, "{patch}, {lod:?}");
+        }
+    }
+}
+
+/// With indices of their own, and with patches hidden.
+#[neurotess_testing::test]
+fn blocks_of_patches_together_are_the_surface() {
+    let mesh = mesh();
+    let (count, options) = (mesh.patches.len(), RefineOptions::default());
+    let levels = point_levels(&mesh);
+    let shown: Vec<bool> = (0..count).map(|patch| patch % 5 != 0).collect();
+    for lod in lods(&levels) {
+        for refinement in [
+            Refinement::new(&mesh, lod, &options),
+            Refinement::of_patches(&mesh, lod, &options, &shown),
+        ] {
+            let surface = SurfaceMesh::collect(&refinement);
+            let whole = surface.faces.triangles.iter();
+            let whole = whole.map(|t| t.map(|v| bits(&surface.vertices[v as usize])));
+            let mut in_blocks = Vec::new();
+            let mut block = PatchBlock::default();
+            for k in 0..refinement.patch_blocks() {
+                refinement.patch_block(k, &mut block);
+                let vertex = |v: u32| bits(&block.vertices[v as usize]);
+                in_blocks.extend(block.faces.triangles.iter().map(|t| t.map(vertex)));
+                // Each is there once, and used.
+                let used: HashSet<u32> = block.faces.triangles.iter().flatten().copied().collect();
+                assert_eq!(used.len(), block.vertices.len());
+            }
+            assert!(whole.eq(in_blocks), "{lod:?}");
         }
     }
 }
