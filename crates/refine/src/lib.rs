@@ -13,7 +13,8 @@
 //!   └─────┴─────┘   coarser side, level 2
 //! ```
 //!
-//! This is the reference for the shaders: plain arrays in, no allocation per patch. The WGSL twin
+//! This is the reference for the shaders: plain arrays in, no allocation per patch. Four edges or patches of a kind are
+//! evaluated at once, by the formulas that shaders have for one. The WGSL twin
 //! of a file is beside it under the same stem; [`gpu`] provides the WGSL files, and [`pack`] the
 //! packed form of a mesh that they read.
 #![forbid(unsafe_code)]
