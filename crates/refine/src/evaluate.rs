@@ -22,208 +22,207 @@
 mod center_line;
 mod corner;
 mod edges;
+mod four;
 mod profile;
+mod tube;
 
 use glam::Vec3;
-use neurotess_mesh::PatchKind;
+use neurotess_mesh::{CoarseMesh, PatchKind};
 
+use crate::fours::four;
 use crate::{Caps, Path, RefineOptions};
-pub(crate) use center_line::{CenterLine, MAX_SWAY, hermite_tangents};
-pub(crate) use corner::{Corner, Jet};
+pub(crate) use center_line::{CenterLines, MAX_SWAY, hermite_tangents};
+pub(crate) use corner::{Corners, Jets};
 pub use edges::SOMA_FILLET;
 pub(crate) use edges::{
-    EdgeCurve, EdgeKind, EdgeNormals, MAX_OFFSET, edge, loft_controls, soma_controls,
+    EdgeCurves, EdgeKind, EdgeNormals, MAX_OFFSET, loft_controls, soma_controls,
 };
-use edges::{OverLength, cubic, first_leg, longer, mix, most_squared};
-use profile::Share;
-pub(crate) use profile::{Profile, STEEPEST_PROFILE};
+use edges::{OverLength, cubic, first_leg, mix};
+pub(crate) use four::{F32x4, Vec3x4};
+pub(crate) use profile::{Profiles, STEEPEST_PROFILE};
+pub(crate) use tube::Tubes;
 
-/// A patch ready to be evaluated inside.
+/// A patch ready to be evaluated inside, at four points at once. Lateral ones are [`Tubes`], of which four patches are
+/// evaluated at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchShape {
     pub(crate) kind: PatchKind,
-    pub(crate) corners: [Corner; 4],
+    /// Each four times.
+    pub(crate) corners: [Corners; 4],
     /// By side: the kind of its edge, and whether the edge runs against the patch's coordinate.
     pub(crate) sides: [(EdgeKind, bool); 4],
+    /// The mean of the corners' normals.
+    mean_normal: Vec3x4,
 }
 
 /// Corners at the start and end of each side, along the patch's coordinates: sides 0 and 2 along x
 /// at y = 0 and 1, sides 1 and 3 along y at x = 1 and 0.
 pub(crate) const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 
-/// A patch ready to be evaluated row by row.
+/// Four points inside patches, or on sides, with their normals.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PatchRows<'s> {
-    shape: &'s PatchShape,
-    options: &'s RefineOptions,
-    /// Of a lateral patch: what all rows have in common.
-    tube: Option<Tube>,
+pub(crate) struct Points {
+    pub(crate) position: Vec3x4,
+    pub(crate) normal: Vec3x4,
 }
 
-/// A tube's center line, and what its corners' offsets and radials change by along it, at x = 0 and 1.
+/// What the points of a patch with the same four x have in common.
 #[derive(Clone, Copy, Debug)]
-struct Tube {
-    line: CenterLine,
-    profile: Profile,
-    offset_y: [Vec3; 2],
-    radial_y: [Vec3; 2],
-    /// The longest offset of the corners of each ring.
-    longest: [f32; 2],
+enum Columns {
+    /// Points of sides 0 and 2.
+    Coons([Points; 2]),
+    /// Controls of the cubics from side 0 to side 2, and their derivatives by x.
+    Loft {
+        across: [Vec3x4; 4],
+        by_x: [Vec3x4; 4],
+    },
 }
 
-/// A tube at some y: its center, and the offsets and radials at x = 0 and 1.
-#[derive(Clone, Copy, Debug)]
-struct TubeRow {
-    tube: Tube,
-    center: Jet,
-    offsets: [Vec3; 2],
-    radials: [Vec3; 2],
-    most_squared: f32,
-    share: Share,
-}
-
-impl<'s> PatchRows<'s> {
-    /// The points inside at this y ∈ (0, 1).
-    pub(crate) fn at(&self, y: f32) -> PatchRow<'s> {
-        PatchRow {
-            shape: self.shape,
-            options: self.options,
-            y,
-            tube: self.tube.map(|tube| TubeRow::new(self.shape, tube, y)),
-        }
-    }
-}
-
-/// Points of a patch with the same y.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PatchRow<'s> {
-    shape: &'s PatchShape,
-    options: &'s RefineOptions,
-    y: f32,
-    /// Of a lateral patch.
-    tube: Option<TubeRow>,
-}
-
-impl PatchRow<'_> {
-    /// A point inside with its normal, x ∈ (0, 1).
-    pub(crate) fn point(&self, x: f32) -> (Vec3, Vec3) {
-        let Self { shape, options, .. } = self;
-        match shape.kind {
-            PatchKind::Lateral => {
-                let tube = self.tube.as_ref();
-                let tube = tube.expect("rows of lateral patches are those of a tube");
-                tube.point(&shape.corners[0], x)
-            }
-            PatchKind::Soma => shape.coons(x, self.y),
-            PatchKind::Loft => shape.loft(options.path, x, self.y),
-            PatchKind::Cap => shape.cap(options.caps, x, self.y),
-        }
-    }
-}
-
-impl PatchRow<'_> {
-    /// The radius of the tube (µm) here; linear between corners of other patches.
-    pub(crate) fn radius(&self, x: f32) -> f32 {
-        if let Some(tube) = &self.tube {
-            return tube.tube.profile.radius(self.y);
-        }
-        let radii = self.shape.corners.map(|corner| corner.radius);
-        (radii[0] * (1.0 - x) + radii[1] * x) * (1.0 - self.y)
-            + (radii[3] * (1.0 - x) + radii[2] * x) * self.y
-    }
-}
-
-impl Tube {
-    fn new(shape: &PatchShape, path: Path) -> Self {
-        let [a, b, c, d] = &shape.corners;
-        let line = CenterLine::new(a, d, path);
-        Self {
-            line,
-            profile: Profile::new(a, d, &line),
-            offset_y: [d.offset - a.offset, c.offset - b.offset],
-            radial_y: [d.radial - a.radial, c.radial - b.radial],
-            longest: [longer(a.offset, b.offset), longer(d.offset, c.offset)],
-        }
-    }
-}
-
-impl TubeRow {
-    fn new(shape: &PatchShape, tube: Tube, y: f32) -> Self {
-        let [a, b, c, d] = &shape.corners;
-        Self {
-            tube,
-            center: tube.line.at(y),
-            offsets: [mix(a.offset, d.offset, y), mix(b.offset, c.offset, y)],
-            radials: [mix(a.radial, d.radial, y), mix(b.radial, c.radial, y)],
-            most_squared: most_squared(tube.longest[0], tube.longest[1], y),
-            share: tube.profile.share(y),
-        }
-    }
-
-    /// `a`: the patch's first corner.
-    fn point(&self, a: &Corner, x: f32) -> (Vec3, Vec3) {
-        let blend = |[at_0, at_1]: [Vec3; 2]| mix(at_0, at_1, x);
-        let change = |[at_0, at_1]: [Vec3; 2]| at_1 - at_0;
-        let (offset, radial) = (blend(self.offsets), blend(self.radials));
-        let over = OverLength::of(radial);
-        let most = self.most_squared;
-        let around = over.jet(offset, change(self.offsets), change(self.radials));
-        let around = around.within(most).around(self.share);
-        let along = over.jet(offset, blend(self.tube.offset_y), blend(self.tube.radial_y));
-        let along = along.within(most).along(self.share);
-        let normal = around
-            .derivative
-            .cross(self.center.derivative + along.derivative)
-            .normalize_or_zero();
-        let outwards = if radial == Vec3::ZERO {
-            a.normal
-        } else {
-            radial
-        };
-        // Where a sharp bend folds the surface over, it gets the normal of a tube without the fold.
-        let normal = if normal.dot(outwards) > 0.0 {
-            normal
-        } else {
-            outwards.normalize_or(a.normal)
-        };
-        (self.center.position + around.position, normal)
-    }
-}
+/// What the points with the same y have in common, of four of them: of a Coons patch, points of sides 3 and 1.
+type Rows = Option<[Points; 2]>;
 
 impl PatchShape {
-    /// The points inside, row by row.
-    pub(crate) fn rows<'s>(&'s self, options: &'s RefineOptions) -> PatchRows<'s> {
-        let is_tube = self.kind == PatchKind::Lateral;
-        PatchRows {
-            shape: self,
-            options,
-            tube: is_tube.then(|| Tube::new(self, options.path)),
+    pub(crate) fn new(mesh: &CoarseMesh, patch: usize, sides: [(EdgeKind, bool); 4]) -> Self {
+        let neurotess_mesh::Patch { kind, corners } = mesh.patches[patch];
+        Self::of_corners(kind, corners.map(|v| Corners::new(mesh, [v; 4])), sides)
+    }
+
+    fn of_corners(kind: PatchKind, corners: [Corners; 4], sides: [(EdgeKind, bool); 4]) -> Self {
+        let sum = corners.iter().fold(Vec3x4::ZERO, |sum, k| sum + k.normal);
+        Self {
+            kind,
+            corners,
+            sides,
+            mean_normal: sum.normalize_or(Vec3x4::splat(Vec3::Y)),
         }
     }
 
     /// A point inside with its normal, x and y ∈ (0, 1).
     pub(crate) fn interior(&self, options: &RefineOptions, x: f32, y: f32) -> (Vec3, Vec3) {
-        self.rows(options).at(y).point(x)
+        let [x, y] = [x, y].map(F32x4::splat);
+        let Points { position, normal } = match self.kind {
+            PatchKind::Lateral => Tubes::new(&self.corners, options.path).row(y).points(x),
+            _ => {
+                let columns = self.columns(options.path, x);
+                self.points(options.caps, (&columns, x), (&self.rows(y), y, 0))
+            }
+        };
+        (position.each()[0], normal.each()[0])
     }
 
-    pub(crate) fn side(&self, side: usize, path: Path, t: f32) -> Jet {
+    /// The radius of the tube (µm) here; linear between corners of other patches.
+    pub(crate) fn radius(&self, options: &RefineOptions, x: f32, y: f32) -> f32 {
+        let [x, y] = [x, y].map(F32x4::splat);
+        let radius = match self.kind {
+            PatchKind::Lateral => Tubes::new(&self.corners, options.path).radius(y),
+            _ => {
+                let [near, far] = self.radii(x);
+                near * (1.0 - y) + far * y
+            }
+        };
+        radius.x
+    }
+
+    /// The radii at sides 0 and 2.
+    fn radii(&self, x: F32x4) -> [F32x4; 2] {
+        let [a, b, c, d] = four(|k| self.corners[k].radius);
+        [a * (1.0 - x) + b * x, d * (1.0 - x) + c * x]
+    }
+
+    /// Calls `put` with column i, row j, the points and the radii (µm) there for all columns i to i + 3 and rows inside
+    /// a grid of `nx` by `ny` cells. Columns from `nx` on are none of the grid. Not for lateral patches.
+    pub(crate) fn for_each_inside(
+        &self,
+        options: &RefineOptions,
+        [nx, ny]: [u32; 2],
+        mut put: impl FnMut([u32; 2], Points, F32x4),
+    ) {
+        let from =
+            |first: u32, n: u32| F32x4::from_array(four(|k| (first + k as u32) as f32 / n as f32));
+        for i in (1..nx).step_by(4) {
+            let x = from(i, nx);
+            let columns = self.columns(options.path, x);
+            let [near, far] = self.radii(x);
+            for first in (1..ny).step_by(4) {
+                let rows = self.rows(from(first, ny));
+                for j in first..ny.min(first + 4) {
+                    let y = F32x4::splat(j as f32 / ny as f32);
+                    let row = (&rows, y, (j - first) as usize);
+                    let points = self.points(options.caps, (&columns, x), row);
+                    put([i, j], points, near * (1.0 - y) + far * y);
+                }
+            }
+        }
+    }
+
+    fn columns(&self, path: Path, x: F32x4) -> Columns {
+        match self.kind {
+            PatchKind::Loft => self.loft(path, x),
+            _ => Columns::Coons([0, 2].map(|side| self.coons_side(side, x))),
+        }
+    }
+
+    fn rows(&self, y: F32x4) -> Rows {
+        (self.kind != PatchKind::Loft).then(|| [3, 1].map(|side| self.coons_side(side, y)))
+    }
+
+    /// At four x, and the same y four times, which is the k-th of `rows`.
+    fn points(
+        &self,
+        caps: Caps,
+        (columns, x): (&Columns, F32x4),
+        (rows, y, k): (&Rows, F32x4, usize),
+    ) -> Points {
+        match (columns, rows) {
+            (Columns::Coons([near, far]), Some([left, right])) => {
+                let [left, right] = [left, right].map(|side| Points {
+                    position: side.position.only(k),
+                    normal: side.normal.only(k),
+                });
+                let position = self.coons([near, &right, far, &left].map(|p| p.position), x, y);
+                match self.kind {
+                    PatchKind::Cap => self.cap(caps, position),
+                    _ => {
+                        let normal = mix(near.normal, far.normal, y) * (x * (1.0 - x))
+                            + mix(left.normal, right.normal, x) * (y * (1.0 - y));
+                        Points {
+                            position,
+                            normal: normal.normalize_or(self.mean_normal),
+                        }
+                    }
+                }
+            }
+            (Columns::Loft { across, by_x }, _) => {
+                let (across, by_x) = (cubic(*across, y), cubic(*by_x, y));
+                let normal = by_x.position.cross(across.derivative);
+                Points {
+                    position: across.position,
+                    normal: normal.normalize_or(self.mean_normal),
+                }
+            }
+            (Columns::Coons(_), None) => unreachable!("Coons patches have rows"),
+        }
+    }
+
+    /// Points of a side.
+    pub(crate) fn side(&self, side: usize, path: Path, t: F32x4) -> Jets {
         let (from, to) = SIDES[side];
         let (a, b) = (&self.corners[from], &self.corners[to]);
         let (kind, reversed) = self.sides[side];
         if reversed {
-            let jet = edge(kind, b, a, path, 1.0 - t);
-            Jet {
-                derivative: -jet.derivative,
-                ..jet
+            let jets = EdgeCurves::new(kind, b, a, path).at(1.0 - t);
+            Jets {
+                derivative: -jets.derivative,
+                ..jets
             }
         } else {
-            edge(kind, a, b, path, t)
+            EdgeCurves::new(kind, a, b, path).at(t)
         }
     }
 
     /// At each x a cubic from the trunk's side to the inset's: [`loft_controls`] between points of the
     /// two sides, with its derivatives.
-    fn loft(&self, path: Path, x: f32, y: f32) -> (Vec3, Vec3) {
+    fn loft(&self, path: Path, x: F32x4) -> Columns {
         let [a, b, c, _] = &self.corners;
         let (near, far) = (self.side(0, path, x), self.side(2, path, x));
         let way = far.position - near.position;
@@ -239,94 +238,83 @@ impl PatchShape {
         let (leave, leave_x) = (over * share, over_x * share + over * share_x);
         let third = way.length() / 3.0;
         let arrive = c.tangent * c.collar.max(-third).min(third);
-        let third_x = way.dot(way_x) / (9.0 * third).max(f32::MIN_POSITIVE);
-        let arrive_x = if third < c.collar.abs() {
-            c.tangent * (third_x * c.collar.signum())
-        } else {
-            Vec3::ZERO
-        };
-        let across = cubic(
-            [
+        let third_x = way.dot(way_x) / (9.0 * third).max(F32x4::splat(f32::MIN_POSITIVE));
+        let arrive_x = Vec3x4::select(
+            third.cmplt(c.collar.abs()),
+            c.tangent * (third_x * c.collar.signum()),
+            Vec3x4::ZERO,
+        );
+        Columns::Loft {
+            across: [
                 near.position,
                 near.position + leave,
                 far.position - arrive,
                 far.position,
             ],
-            y,
-        );
-        let by_x = cubic(
-            [
+            by_x: [
                 near.derivative,
                 near.derivative + leave_x,
                 far.derivative - arrive_x,
                 far.derivative,
             ],
-            y,
-        );
-        let normal = by_x.position.cross(across.derivative);
-        (across.position, normal.normalize_or(self.mean_normal()))
+        }
     }
 
-    fn mean_normal(&self) -> Vec3 {
-        let sum: Vec3 = self.corners.iter().map(|k| k.normal).sum();
-        sum.normalize_or(Vec3::Y)
+    /// Bilinearly blended Coons patch between points of its sides. Its normal is that of the sides, the nearer one
+    /// more: that of the surface jumps at the sides, which shows as lines where a ring pulls a soma out.
+    fn coons(&self, [near, right, far, left]: [Vec3x4; 4], x: F32x4, y: F32x4) -> Vec3x4 {
+        let [a, b, c, d] = four(|k| self.corners[k].position);
+        mix(near, far, y) + mix(left, right, x) - mix(mix(a, b, x), mix(d, c, x), y)
     }
 
-    /// Bilinearly blended Coons patch. Its normal is that of the sides, the nearer one more: that of the surface
-    /// jumps at the sides, which shows as lines where a ring pulls a soma out.
-    fn coons(&self, x: f32, y: f32) -> (Vec3, Vec3) {
-        let [near, right, far, left] = [
-            self.side(0, Path::Hermite, x),
-            self.side(1, Path::Hermite, y),
-            self.side(2, Path::Hermite, x),
-            self.side(3, Path::Hermite, y),
-        ];
-        let [a, b, c, d] = self.corners.map(|k| k.position);
-        let position = mix(near.position, far.position, y) + mix(left.position, right.position, x)
-            - mix(mix(a, b, x), mix(d, c, x), y);
-        let [along_near, along_right, along_far, along_left] = [
-            self.side_normal(0, &near, x),
-            self.side_normal(1, &right, y),
-            self.side_normal(2, &far, x),
-            self.side_normal(3, &left, y),
-        ];
-        let normal = mix(along_near, along_far, y) * (x * (1.0 - x))
-            + mix(along_left, along_right, x) * (y * (1.0 - y));
-        (position, normal.normalize_or(self.mean_normal()))
+    /// Points of a side of a Coons patch, with normals where it needs them: that of a cap has its own.
+    fn coons_side(&self, side: usize, t: F32x4) -> Points {
+        let jets = self.side(side, Path::Hermite, t);
+        Points {
+            position: jets.position,
+            normal: match self.kind {
+                PatchKind::Cap => Vec3x4::ZERO,
+                _ => self.side_normal(side, &jets, t),
+            },
+        }
     }
 
-    fn side_normal(&self, side: usize, jet: &Jet, t: f32) -> Vec3 {
+    fn side_normal(&self, side: usize, jets: &Jets, t: F32x4) -> Vec3x4 {
         let (from, to) = SIDES[side];
         let (kind, _) = self.sides[side];
-        EdgeNormals::new(kind, &self.corners[from], &self.corners[to]).at(jet.derivative, t)
+        EdgeNormals::new(kind, &self.corners[from], &self.corners[to]).at(jets.derivative, t)
     }
 
     /// The end of a tube: a disk, or the half sphere over it, whose polar angle grows with the
     /// distance from the disk's center.
-    fn cap(&self, caps: Caps, x: f32, y: f32) -> (Vec3, Vec3) {
-        let (flat, _) = self.coons(x, y);
+    fn cap(&self, caps: Caps, flat: Vec3x4) -> Points {
         let [a, b, _, d] = &self.corners;
         let tangent = a.tangent;
         let outwards = (b.offset - a.offset).cross(d.offset - a.offset);
-        let axis = if outwards.dot(tangent) < 0.0 {
-            -tangent
-        } else {
-            tangent
-        };
+        let is_against = outwards.dot(tangent).cmplt(F32x4::ZERO);
+        let axis = Vec3x4::select(is_against, -tangent, tangent);
         if caps == Caps::Flat {
-            return (flat, axis);
+            return Points {
+                position: flat,
+                normal: axis,
+            };
         }
         let radius = a.offset.length();
         let across = flat - a.center;
-        let share = (across.length() / radius.max(f32::MIN_POSITIVE)).min(1.0);
+        let share = across.length() / radius.max(F32x4::splat(f32::MIN_POSITIVE));
+        let share = share.min(F32x4::ONE);
         let angle = share * std::f32::consts::FRAC_PI_2;
-        let stretch = if share > 1e-4 {
-            angle.sin() / share
-        } else {
-            std::f32::consts::FRAC_PI_2
-        };
-        let dome = across * stretch + axis * (radius * angle.cos());
-        (a.center + dome, dome.normalize_or(axis))
+        let each = |of: fn(f32) -> f32| F32x4::from_array(angle.to_array().map(of));
+        let stretch = F32x4::select(
+            share.cmpgt(F32x4::splat(1e-4)),
+            each(f32::sin) / share,
+            F32x4::splat(std::f32::consts::FRAC_PI_2),
+        );
+        let dome = across * stretch + axis * (radius * each(f32::cos));
+        Points {
+            position: a.center + dome,
+            normal: dome.normalize_or(axis),
+        }
     }
 }
 

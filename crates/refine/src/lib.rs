@@ -13,7 +13,8 @@
 //!   └─────┴─────┘   coarser side, level 2
 //! ```
 //!
-//! This is the reference for the shaders: plain arrays in, no allocation per patch. The WGSL twin
+//! This is the reference for the shaders: plain arrays in, no allocation per patch. Four edges or patches of a kind are
+//! evaluated at once, by the formulas that shaders have for one. The WGSL twin
 //! of a file is beside it under the same stem; [`gpu`] provides the WGSL files, and [`pack`] the
 //! packed form of a mesh that they read.
 #![forbid(unsafe_code)]
@@ -24,13 +25,16 @@ mod coarse_surface;
 mod decode;
 mod evaluate;
 mod explicit;
+mod fours;
 pub mod gpu;
+mod inner;
 mod level;
 mod options;
 mod pack;
 mod packed;
 mod packer;
 mod part;
+mod patch_block;
 mod patch_points;
 mod plan;
 mod refinement;
@@ -48,6 +52,7 @@ pub use level::{HIGHEST_LEVEL, HIGHEST_LEVEL_BY_LENGTH};
 pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
 pub use pack::{dequantized, pack};
 pub use part::{MeshPart, PATCHES_OF_SPHERE, PartLayout};
+pub use patch_block::PatchBlock;
 pub use patch_points::patch_points;
 pub use plan::patch_triangles;
 pub use refinement::Refinement;

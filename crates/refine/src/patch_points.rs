@@ -4,7 +4,7 @@ use glam::Vec3;
 use neurotess_mesh::CoarseMesh;
 
 use crate::RefineOptions;
-use crate::evaluate::{Corner, PatchShape, SIDES};
+use crate::evaluate::{F32x4, PatchShape, SIDES};
 use crate::plan::side_of;
 
 /// Appends the points of one patch on a grid of `steps` by `steps` cells, row by row: (steps + 1)² of them.
@@ -18,11 +18,8 @@ pub fn patch_points(
     options: &RefineOptions,
     out: &mut Vec<Vec3>,
 ) {
-    let shape = PatchShape {
-        kind: mesh.patches[patch].kind,
-        corners: mesh.patches[patch].corners.map(|v| Corner::new(mesh, v)),
-        sides: [0, 1, 2, 3].map(|side| side_of(mesh, patch, side)),
-    };
+    let sides = [0, 1, 2, 3].map(|side| side_of(mesh, patch, side));
+    let shape = PatchShape::new(mesh, patch, sides);
     let share = |i: u32| i as f32 / steps as f32;
     for j in 0..=steps {
         for i in 0..=steps {
@@ -37,9 +34,13 @@ pub fn patch_points(
             out.push(match side {
                 Some((side, at)) if ends == [true; 2] => {
                     let (from, to) = SIDES[side];
-                    shape.corners[if at == 0 { from } else { to }].position
+                    let corner = mesh.patches[patch].corners[if at == 0 { from } else { to }];
+                    mesh.vertices[corner as usize].position
                 }
-                Some((side, at)) => shape.side(side, options.path, share(at)).position,
+                Some((side, at)) => {
+                    let at = F32x4::splat(share(at));
+                    shape.side(side, options.path, at).position.each()[0]
+                }
                 None => shape.interior(options, share(i), share(j)).0,
             });
         }

@@ -4,12 +4,21 @@
 //! direction, then the inner ones of every patch row by row. Memory grows with the coarse mesh
 //! only, not with the level.
 
-use neurotess_mesh::{CoarseMesh, Faces, Patch, PatchKind, Role};
+mod edges;
+mod faces;
+
+use std::ops::Range;
+
+use neurotess_mesh::{CoarseMesh, PatchKind};
 use rayon::prelude::*;
 
-use crate::evaluate::{Corner, EdgeKind, SIDES};
-use crate::level::{HIGHEST_LEVEL, bend, edge_level};
+use crate::evaluate::{Corners, EdgeKind};
+use crate::fours::{Fours, four};
+use crate::level::{HIGHEST_LEVEL, bend, edge_levels};
 use crate::{Caps, Lod, Path, RefineOptions};
+use edges::find_edges;
+pub(crate) use edges::side_of;
+pub(crate) use faces::Numbers;
 
 /// An edge of the coarse mesh.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +34,16 @@ pub(crate) struct Edge {
     pub(crate) first: u32,
 }
 
-/// All edges, and the edges and inner vertices of each patch.
+impl Edge {
+    pub(crate) fn ends(&self) -> [u32; 2] {
+        [self.from, self.to]
+    }
+}
+
+/// All edges of the patches that are shown, and the edges and inner vertices of each of these.
 pub(crate) struct Plan {
+    /// All, without.
+    pub(crate) shown: Option<Vec<bool>>,
     pub(crate) edges: Vec<Edge>,
     pub(crate) patch_edges: Vec<[u32; 4]>,
     /// Number of the first inner vertex of each patch, as in [`Edge::first`].
@@ -37,34 +54,56 @@ pub(crate) struct Plan {
 }
 
 /// The grid of a patch: its columns and rows of cells, and the levels of its four sides.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Grid {
     pub(crate) nx: u32,
     pub(crate) ny: u32,
-    levels: [u32; 4],
+    pub(crate) levels: [u32; 4],
+}
+
+/// The first number of a range, and how many there are up to the next.
+fn numbers(range: &Range<usize>, first: impl Fn(usize) -> u32) -> (u32, usize) {
+    let start = first(range.start);
+    (start, first(range.end).wrapping_sub(start) as usize)
 }
 
 /// Edges that are worth a thread.
 const MIN_EDGES: usize = 4096;
 
 impl Plan {
-    pub(crate) fn new(mesh: &CoarseMesh, lod: &Lod<'_>, options: &RefineOptions) -> Self {
-        let (mut edges, patch_edges) = find_edges(mesh);
-        edges
-            .par_iter_mut()
-            .with_min_len(MIN_EDGES)
-            .for_each(|edge| {
-                let ends = [edge.from, edge.to]
-                    .map(|v| (Corner::new(mesh, v), mesh.vertices[v as usize].tracing));
-                let [(a, ta), (b, tb)] = &ends;
-                edge.level = edge_level(lod, options.path, edge.kind, (a, *ta), (b, *tb)) as u16;
-            });
+    /// `shown`: for each patch, or none where all are.
+    pub(crate) fn new(
+        mesh: &CoarseMesh,
+        lod: &Lod<'_>,
+        options: &RefineOptions,
+        shown: Option<Vec<bool>>,
+    ) -> Self {
+        let (mut edges, patch_edges) = find_edges(mesh, shown.as_deref());
+        edges.par_chunks_mut(MIN_EDGES).for_each(|edges| {
+            let set = |edges: &mut [Edge], of: [u32; 4]| {
+                let levels = four(|k| &edges[of[k] as usize]);
+                let levels = edge_levels(mesh, lod, options.path, levels);
+                for (edge, level) in of.into_iter().zip(levels) {
+                    edges[edge as usize].level = level as u16;
+                }
+            };
+            let mut waiting = Fours::<u32>::default();
+            for edge in 0..edges.len() {
+                if let Some(four) = waiting.add(edges[edge].kind as u32, edge as u32) {
+                    set(edges, four);
+                }
+            }
+            for four in waiting.rest() {
+                set(edges, four);
+            }
+        });
         let mut next = mesh.vertices.len() as u64;
         for edge in &mut edges {
             edge.first = next as u32;
             next += u64::from(edge.level) - 1;
         }
         let mut plan = Self {
+            shown,
             edges,
             patch_edges,
             patch_first: Vec::new(),
@@ -76,7 +115,7 @@ impl Plan {
         for patch in 0..mesh.patches.len() {
             let grid = plan.grid(mesh, options, patch);
             plan.patch_first.push(next as u32);
-            next += u64::from(grid.nx - 1) * u64::from(grid.ny - 1);
+            next += grid.inner_count();
             let (triangles, quads) = grid.face_counts(options.quads);
             plan.triangles += triangles;
             plan.quads += quads;
@@ -89,82 +128,35 @@ impl Plan {
         usize::try_from(self.vertices).unwrap_or(usize::MAX)
     }
 
+    /// Number of the first inner vertex of some edges, and how many they have.
+    pub(crate) fn numbers_of_edges(&self, edges: &Range<usize>) -> (u32, usize) {
+        let first = |edge: usize| match self.edges.get(edge) {
+            Some(edge) => edge.first,
+            None => self.first_of_patch(0),
+        };
+        numbers(edges, first)
+    }
+
+    /// The same for patches.
+    pub(crate) fn numbers_of_patches(&self, patches: &Range<usize>) -> (u32, usize) {
+        numbers(patches, |patch| self.first_of_patch(patch))
+    }
+
+    fn first_of_patch(&self, patch: usize) -> u32 {
+        let first = self.patch_first.get(patch).copied();
+        first.unwrap_or(self.vertices as u32)
+    }
+
+    /// The grid of a patch. One that is hidden has no cells.
+    #[inline(always)]
     pub(crate) fn grid(&self, mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> Grid {
-        let levels = self.patch_edges[patch].map(|e| u32::from(self.edges[e as usize].level));
+        if self.shown.as_ref().is_some_and(|shown| !shown[patch]) {
+            return Grid::default();
+        }
+        let [a, b, c, d] = self.patch_edges[patch];
+        let level = |edge: u32| u32::from(self.edges[edge as usize].level);
+        let levels = [level(a), level(b), level(c), level(d)];
         Grid::new(mesh.patches[patch].kind, options.caps, levels)
-    }
-
-    /// Number of the vertex at column i and row j of a patch's grid. Vertices on a side are those
-    /// of its edge: where the edge has fewer, several columns share one.
-    pub(crate) fn vertex(
-        &self,
-        corners: [u32; 4],
-        patch: usize,
-        grid: &Grid,
-        i: u32,
-        j: u32,
-    ) -> u32 {
-        let side = if j == 0 {
-            0
-        } else if j == grid.ny {
-            2
-        } else if i == 0 {
-            3
-        } else if i == grid.nx {
-            1
-        } else {
-            return self.patch_first[patch] + (j - 1) * (grid.nx - 1) + i - 1;
-        };
-        let (place, count) = if side % 2 == 0 {
-            (i, grid.nx)
-        } else {
-            (j, grid.ny)
-        };
-        let level = grid.levels[side];
-        let place = snap(place, count, level);
-        let (start, end) = SIDES[side];
-        if place == 0 {
-            return corners[start];
-        }
-        if place == level {
-            return corners[end];
-        }
-        let edge = &self.edges[self.patch_edges[patch][side] as usize];
-        let place = if edge.from == corners[start] {
-            place
-        } else {
-            level - place
-        };
-        edge.first + place - 1
-    }
-
-    /// Appends the faces of a patch. `rows`: room for the numbers of its vertices, to be used again.
-    pub(crate) fn faces(
-        &self,
-        mesh: &CoarseMesh,
-        options: &RefineOptions,
-        patch: usize,
-        rows: &mut Vec<u32>,
-        out: &mut Faces,
-    ) {
-        let corners = mesh.patches[patch].corners;
-        let grid = self.grid(mesh, options, patch);
-        let fans = mesh.patches[patch].kind != PatchKind::Lateral;
-        // Up to four cells share a vertex: its number is found once.
-        rows.clear();
-        for j in 0..=grid.ny {
-            rows.extend((0..=grid.nx).map(|i| self.vertex(corners, patch, &grid, i, j)));
-        }
-        let width = grid.nx as usize + 1;
-        for (j, (row, next)) in (0..).zip(rows.chunks(width).zip(rows[width..].chunks(width))) {
-            for (i, (near, far)) in (0..).zip(row.windows(2).zip(next.windows(2))) {
-                let quad = [near[0], near[1], far[1], far[0]];
-                // Diagonals run towards the patch's corners on round patches, and are parallel on
-                // others.
-                let falling = fans && ((2 * i < grid.nx) != (2 * j < grid.ny));
-                cell(quad, falling, options.quads, out);
-            }
-        }
     }
 }
 
@@ -178,35 +170,16 @@ fn snap(i: u32, n: u32, level: u32) -> u32 {
     (2 * i * level + n) / (2 * n)
 }
 
-fn cell(quad: [u32; 4], falling: bool, quads: bool, out: &mut Faces) {
-    let [a, b, c, d] = quad;
-    let whole = a != b && b != c && c != d && d != a;
-    if quads && whole {
-        out.quads.push(quad);
-        return;
-    }
-    let pair = if falling {
-        [[a, b, d], [b, c, d]]
-    } else {
-        [[a, b, c], [a, c, d]]
-    };
-    for [p, q, r] in pair {
-        if p != q && q != r && r != p {
-            out.triangles.push([p, q, r]);
-        }
-    }
-}
-
 /// By patch: the greatest bound of the second derivative of its sides (µm), whatever the path.
 pub(crate) fn patch_bends(mesh: &CoarseMesh) -> Vec<f32> {
-    let (edges, patch_edges) = find_edges(mesh);
+    let (edges, patch_edges) = find_edges(mesh, None);
     let bends: Vec<f32> = edges
         .iter()
         .map(|edge| {
-            let [a, b] = [edge.from, edge.to].map(|v| Corner::new(mesh, v));
+            let [a, b] = [edge.from, edge.to].map(|v| Corners::new(mesh, [v; 4]));
             // A bound for both paths: on a straight one the radius may bend more.
             let [curved, straight] =
-                [Path::Hermite, Path::Linear].map(|path| bend(path, edge.kind, &a, &b));
+                [Path::Hermite, Path::Linear].map(|path| bend(path, edge.kind, &a, &b).x);
             let bend = if straight > curved { straight } else { curved };
             if bend.is_nan() { f32::INFINITY } else { bend }
         })
@@ -222,6 +195,7 @@ pub fn patch_triangles(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> (u32, u
 }
 
 impl Grid {
+    #[inline(always)]
     fn new(kind: PatchKind, caps: Caps, levels: [u32; 4]) -> Self {
         let (mut nx, mut ny) = (levels[0].max(levels[2]), levels[1].max(levels[3]));
         if kind == PatchKind::Cap && caps == Caps::Round {
@@ -232,16 +206,27 @@ impl Grid {
         Self { nx, ny, levels }
     }
 
+    /// Whether no side is coarser.
+    fn is_whole(&self) -> bool {
+        self.levels == [self.nx, self.ny, self.nx, self.ny]
+    }
+
+    pub(crate) fn inner_count(&self) -> u64 {
+        u64::from(self.nx.saturating_sub(1)) * u64::from(self.ny.saturating_sub(1))
+    }
+
+    /// Which of the inner vertices the one at column i of row j is.
+    #[inline(always)]
+    pub(crate) fn inner(&self, i: u32, j: u32) -> usize {
+        ((j - 1) * (self.nx - 1) + i - 1) as usize
+    }
+
     /// Numbers of triangles and quads. Every step of a side that snapping makes empty takes one
     /// triangle away.
     pub(crate) fn face_counts(&self, quads: bool) -> (usize, usize) {
-        let [nx, ny] = [self.nx, self.ny].map(|n| n as usize);
-        let empty: usize = self
-            .levels
-            .iter()
-            .zip([nx, ny, nx, ny])
-            .map(|(&l, n)| n - l as usize)
-            .sum();
+        let [nx, ny] = [self.nx as usize, self.ny as usize];
+        let steps: u32 = self.levels.iter().sum();
+        let empty = 2 * (nx + ny) - steps as usize;
         let triangles = 2 * nx * ny - empty;
         if !quads {
             return (triangles, 0);
@@ -260,86 +245,5 @@ impl Grid {
             }
         }
         (triangles - 2 * whole, whole)
-    }
-}
-
-/// Finds the edges, and those of every patch. Counts half-edges by their lower vertex: this needs
-/// no hashing, and sorts only the few edges of each vertex.
-fn find_edges(mesh: &CoarseMesh) -> (Vec<Edge>, Vec<[u32; 4]>) {
-    let ends = |patch: usize, side: usize| {
-        let corners = mesh.patches[patch].corners;
-        (corners[SIDES[side].0], corners[SIDES[side].1])
-    };
-    let mut start = vec![0_u32; mesh.vertices.len() + 1];
-    for patch in 0..mesh.patches.len() {
-        for side in 0..4 {
-            let (a, b) = ends(patch, side);
-            start[a.min(b) as usize + 1] += 1;
-        }
-    }
-    for i in 1..start.len() {
-        start[i] += start[i - 1];
-    }
-    let mut fill = start.clone();
-    let mut half_edges = vec![(0_u32, 0_u32); 4 * mesh.patches.len()];
-    for patch in 0..mesh.patches.len() {
-        for side in 0..4 {
-            let (a, b) = ends(patch, side);
-            let slot = &mut fill[a.min(b) as usize];
-            half_edges[*slot as usize] = (a.max(b), (4 * patch + side) as u32);
-            *slot += 1;
-        }
-    }
-    let mut edges = Vec::with_capacity(2 * mesh.patches.len());
-    let mut patch_edges = vec![[0_u32; 4]; mesh.patches.len()];
-    for v in 0..mesh.vertices.len() {
-        let bucket = &mut half_edges[start[v] as usize..start[v + 1] as usize];
-        bucket.sort_unstable();
-        let mut last = u32::MAX;
-        for &(high, half) in bucket.iter() {
-            let (patch, side) = (half as usize / 4, half as usize % 4);
-            if high != last {
-                edges.push(describe(mesh, patch, side));
-                last = high;
-            }
-            patch_edges[patch][side] = edges.len() as u32 - 1;
-        }
-    }
-    (edges, patch_edges)
-}
-
-/// Kind of a patch's side, and whether its edge runs against the patch's coordinate.
-pub(crate) fn side_of(mesh: &CoarseMesh, patch: usize, side: usize) -> (EdgeKind, bool) {
-    let edge = describe(mesh, patch, side);
-    let start = mesh.patches[patch].corners[SIDES[side].0];
-    (edge.kind, edge.from != start)
-}
-
-fn describe(mesh: &CoarseMesh, patch: usize, side: usize) -> Edge {
-    let Patch { corners, kind } = mesh.patches[patch];
-    let (a, b) = (corners[SIDES[side].0], corners[SIDES[side].1]);
-    let tracing = |v: u32| mesh.vertices[v as usize].tracing;
-    let role = |v: u32| mesh.tracing[tracing(v) as usize].role;
-    let around = tracing(a) == tracing(b) && role(a) != Role::Soma;
-    let edge_kind = match kind {
-        _ if around => EdgeKind::Ring,
-        PatchKind::Soma => EdgeKind::Soma,
-        PatchKind::Loft if side % 2 == 1 => EdgeKind::Loft,
-        // The side of a trunk's quad is as in the tube beside it, that of a soma's as in the soma.
-        PatchKind::Loft if role(a) != Role::Ordinary || role(b) != Role::Ordinary => EdgeKind::Soma,
-        PatchKind::Lateral | PatchKind::Cap | PatchKind::Loft => EdgeKind::Along,
-    };
-    // A path's rings are numbered along it, so a loft's side finds the direction of the tube beside it.
-    let (from, to) = match (edge_kind, kind) {
-        (EdgeKind::Loft, _) | (EdgeKind::Along, PatchKind::Lateral | PatchKind::Cap) => (a, b),
-        _ => (a.min(b), a.max(b)),
-    };
-    let kind = edge_kind;
-    Edge {
-        from,
-        to,
-        kind,
-        level: 1,
-        first: 0,
     }
 }

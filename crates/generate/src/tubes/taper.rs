@@ -1,6 +1,6 @@
 //! How fast a tube widens at a ring between two others.
 //!
-//! **Theory.** Between rings the radius is a cubic (`Profile` of refine's `evaluate/profile.rs`), and both cubics
+//! **Theory.** Between rings the radius is a cubic (`Profiles` of refine's `evaluate/profile.rs`), and both cubics
 //! beside a ring have this slope there, so that the radius is continuously differentiable. A cubic between two
 //! values has no extremum inside if both its slopes have the sign of the way between the values and neither is more
 //! than three times as steep: Fritsch and Carlson, Monotone piecewise cubic interpolation, SIAM Journal on Numerical

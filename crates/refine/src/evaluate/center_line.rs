@@ -1,23 +1,24 @@
-//! The center line between two tracing points.
+//! The center lines between two tracing points each.
 
-use glam::Vec3;
 use neurotess_mesh::Role;
 
-use super::corner::{Corner, Jet};
+use super::corner::{Corners, Jets};
+use super::four::{F32x4, Vec3x4};
 use crate::Path;
 
-/// The center line between two tracing points.
+/// Four center lines, each between two tracing points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CenterLine {
-    from: Vec3,
-    to: Vec3,
-    way: Vec3,
-    /// Of a curve: those at its ends.
-    tangents: Option<(Vec3, Vec3)>,
+pub(crate) struct CenterLines {
+    from: Vec3x4,
+    to: Vec3x4,
+    way: Vec3x4,
+    /// Of curves: those at their ends.
+    tangents: Option<(Vec3x4, Vec3x4)>,
 }
 
-impl CenterLine {
-    pub(crate) fn new(a: &Corner, b: &Corner, path: Path) -> Self {
+impl CenterLines {
+    #[inline(always)]
+    pub(crate) fn new(a: &Corners, b: &Corners, path: Path) -> Self {
         Self {
             from: a.center,
             to: b.center,
@@ -26,17 +27,18 @@ impl CenterLine {
         }
     }
 
-    /// Lengths (µm) of its derivatives at both ends.
-    pub(crate) fn speeds(&self) -> [f32; 2] {
+    /// Lengths (µm) of their derivatives at both ends.
+    pub(crate) fn speeds(&self) -> [F32x4; 2] {
         let (near, far) = self.tangents.unwrap_or((self.way, self.way));
         [near.length(), far.length()]
     }
 
     /// At y ∈ [0, 1].
-    pub(crate) fn at(&self, y: f32) -> Jet {
+    #[inline(always)]
+    pub(crate) fn at(&self, y: F32x4) -> Jets {
         let Self { from, to, way, .. } = *self;
         let Some((m0, m1)) = self.tangents else {
-            return Jet {
+            return Jets {
                 position: from * (1.0 - y) + to * y,
                 derivative: way,
             };
@@ -49,7 +51,7 @@ impl CenterLine {
         let derivative = way * (6.0 * y - 6.0 * y2)
             + m0 * (3.0 * y2 - 4.0 * y + 1.0)
             + m1 * (3.0 * y2 - 2.0 * y);
-        Jet {
+        Jets {
             position,
             derivative,
         }
@@ -66,24 +68,29 @@ impl CenterLine {
 /// 0.20 on IF4_140201). The price is visible corners on thin axons with long segments.
 pub(crate) const MAX_SWAY: f32 = 0.12;
 
-/// Tangents of the center line: the directions at its ends times the segment's length, so that it
-/// makes no loops, shortened where it would sway too far. At a joint the segment itself, since the
+/// Tangents of center lines: the directions at their ends times the segment's length, so that they
+/// make no loops, shortened where they would sway too far. At a joint the segment itself, since the
 /// tubes there have no common direction.
 ///
 /// A tangent bends a cubic away from the segment by at most 4/27 of the tangent's part across the
 /// segment.
-pub(crate) fn hermite_tangents(a: &Corner, b: &Corner) -> (Vec3, Vec3) {
+#[inline(always)]
+pub(crate) fn hermite_tangents(a: &Corners, b: &Corners) -> (Vec3x4, Vec3x4) {
     let way = b.center - a.center;
     let length = way.length();
-    let direction = way / length.max(f32::MIN_POSITIVE);
+    let direction = way / length.max(F32x4::splat(f32::MIN_POSITIVE));
     let most = MAX_SWAY * a.radius.min(b.radius) * (27.0 / 4.0);
-    let tangent = |corner: &Corner| {
-        if corner.role == Role::Joint {
-            return way;
-        }
-        let across = corner.tangent - direction * corner.tangent.dot(direction);
-        let sway = across.length() * length;
-        corner.tangent * (length * (most / sway.max(most)))
-    };
-    (tangent(a), tangent(b))
+    let at_joint = |corner: &Corners| corner.has_role(Role::Joint);
+    (
+        Vec3x4::select(at_joint(a), way, tangent(a, length, direction, most)),
+        Vec3x4::select(at_joint(b), way, tangent(b, length, direction, most)),
+    )
+}
+
+/// `most`: greatest sway times 27/4.
+#[inline(always)]
+fn tangent(corner: &Corners, length: F32x4, direction: Vec3x4, most: F32x4) -> Vec3x4 {
+    let across = corner.tangent - direction * corner.tangent.dot(direction);
+    let sway = across.length() * length;
+    corner.tangent * (length * (most / sway.max(most)))
 }

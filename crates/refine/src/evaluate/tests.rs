@@ -3,22 +3,28 @@ use neurotess_mesh::Role;
 use super::*;
 
 /// Corner of a ring, at an angle around its tangent.
-fn corner(center: Vec3, tangent: Vec3, radius: f32, angle: f32) -> Corner {
+fn corner(center: Vec3, tangent: Vec3, radius: f32, angle: f32) -> Corners {
     let tangent = tangent.normalize_or(Vec3::Z);
     let side = tangent.cross(Vec3::X).normalize_or(Vec3::Y);
     let radial = side * angle.cos() + tangent.cross(side) * angle.sin();
-    Corner {
-        position: center + radial * radius,
-        normal: radial,
-        center,
-        offset: radial * radius,
-        radial,
-        tangent,
-        radius,
-        role: Role::Ordinary,
-        collar: 0.0,
-        taper: 0.0,
+    Corners {
+        position: Vec3x4::splat(center + radial * radius),
+        normal: Vec3x4::splat(radial),
+        center: Vec3x4::splat(center),
+        offset: Vec3x4::splat(radial * radius),
+        radial: Vec3x4::splat(radial),
+        tangent: Vec3x4::splat(tangent),
+        radius: F32x4::splat(radius),
+        role: [Role::Ordinary; 4],
+        collar: F32x4::ZERO,
+        taper: F32x4::ZERO,
     }
+}
+
+/// Position and derivative of an edge along a tube.
+fn along(a: &Corners, b: &Corners, t: f32) -> (Vec3, Vec3) {
+    let jets = EdgeCurves::new(EdgeKind::Along, a, b, Path::Hermite).at(F32x4::splat(t));
+    (jets.position.each()[0], jets.derivative.each()[0])
 }
 
 /// Lines would show along the edges of a tube whose rings lean over, if normals on edges were not those beside
@@ -35,21 +41,20 @@ fn normals_along_a_sheared_tube_are_those_beside() {
             let angle = |k: u32| std::f32::consts::FRAC_PI_2 * (quarter + k) as f32 + 0.3;
             let low = |k| corner(Vec3::ZERO, Vec3::Z + from, 1.0, angle(k));
             let high = |k| corner(Vec3::Z * 2.0, Vec3::Z + to, 0.8, angle(k));
-            let shape = PatchShape {
-                kind: PatchKind::Lateral,
-                corners: [low(0), low(1), high(1), high(0)],
-                sides: [
-                    EdgeKind::Ring,
-                    EdgeKind::Along,
-                    EdgeKind::Ring,
-                    EdgeKind::Along,
-                ]
-                .map(|kind| (kind, false)),
-            };
+            let corners = [low(0), low(1), high(1), high(0)];
+            let sides = [
+                EdgeKind::Ring,
+                EdgeKind::Along,
+                EdgeKind::Ring,
+                EdgeKind::Along,
+            ];
+            let sides = sides.map(|kind| (kind, false));
+            let shape = PatchShape::of_corners(PatchKind::Lateral, corners, sides);
             let [a, .., d] = &shape.corners;
             for y in [0.1, 0.3, 0.5, 0.7, 0.9] {
-                let jet = edge(EdgeKind::Along, a, d, Path::Hermite, y);
-                let on = EdgeNormals::new(EdgeKind::Along, a, d).at(jet.derivative, y);
+                let derivative = Vec3x4::splat(along(a, d, y).1);
+                let on = EdgeNormals::new(EdgeKind::Along, a, d).at(derivative, F32x4::splat(y));
+                let on = on.each()[0];
                 let (_, beside) = shape.interior(&RefineOptions::default(), 1e-3, y);
                 let off = on.angle_between(beside).to_degrees();
                 assert!(off < 8.0, "{off}° at {y}, rings lean by {from} and {to}");
@@ -61,26 +66,23 @@ fn normals_along_a_sheared_tube_are_those_beside() {
 /// Patches of a soma would show as facets if their normals jumped at the sides.
 #[test]
 fn normals_of_a_soma_s_patch_go_over_into_those_of_its_sides() {
-    let at = |x: f32, y: f32, normal: Vec3| Corner {
-        role: Role::Soma,
-        position: Vec3::new(x, y, 0.2 * x * y),
-        normal: normal.normalize_or(Vec3::Z),
+    let at = |x: f32, y: f32, normal: Vec3| Corners {
+        role: [Role::Soma; 4],
+        position: Vec3x4::splat(Vec3::new(x, y, 0.2 * x * y)),
+        normal: Vec3x4::splat(normal.normalize_or(Vec3::Z)),
         ..corner(Vec3::ZERO, Vec3::Z, 1.0, 0.0)
     };
-    let shape = PatchShape {
-        kind: PatchKind::Soma,
-        corners: [
-            at(0.0, 0.0, Vec3::new(-0.5, -0.3, 1.0)),
-            at(1.0, 0.0, Vec3::new(0.6, -0.2, 1.0)),
-            at(1.0, 1.0, Vec3::new(0.3, 0.8, 1.0)),
-            at(0.0, 1.0, Vec3::new(-0.7, 0.4, 1.0)),
-        ],
-        sides: [(EdgeKind::Soma, false); 4],
-    };
+    let corners = [
+        at(0.0, 0.0, Vec3::new(-0.5, -0.3, 1.0)),
+        at(1.0, 0.0, Vec3::new(0.6, -0.2, 1.0)),
+        at(1.0, 1.0, Vec3::new(0.3, 0.8, 1.0)),
+        at(0.0, 1.0, Vec3::new(-0.7, 0.4, 1.0)),
+    ];
+    let shape = PatchShape::of_corners(PatchKind::Soma, corners, [(EdgeKind::Soma, false); 4]);
     let (low, high) = (1e-4, 1.0 - 1e-4);
     for t in [0.1, 0.4, 0.8] {
         for (side, x, y) in [(0, t, low), (1, high, t), (2, t, high), (3, low, t)] {
-            let on = shape.side_normal(side, &shape.side(side, Path::Hermite, t), t);
+            let on = shape.coons_side(side, F32x4::splat(t)).normal.each()[0];
             let (_, beside) = shape.interior(&RefineOptions::default(), x, y);
             let off = on.angle_between(beside).to_degrees();
             assert!(off < 0.2, "{off}° at {t} of side {side}");
@@ -89,20 +91,20 @@ fn normals_of_a_soma_s_patch_go_over_into_those_of_its_sides() {
 }
 
 /// A corner of a straight tube along z, at this height.
-fn along_z(height: f32, radius: f32, taper: f32, role: Role) -> Corner {
-    Corner {
-        taper,
-        role,
+fn along_z(height: f32, radius: f32, taper: f32, role: Role) -> Corners {
+    Corners {
+        taper: F32x4::splat(taper),
+        role: [role; 4],
         ..corner(Vec3::Z * height, Vec3::Z, radius, 0.0)
     }
 }
 
 /// Radius of a straight tube and its slope (µm per µm) at a share of the way between two corners.
-fn radius_and_slope(a: &Corner, b: &Corner, y: f32) -> (f32, f32) {
-    let jet = edge(EdgeKind::Along, a, b, Path::Hermite, y);
-    let axis = Vec3::new(jet.position.x, jet.position.y, 0.0);
+fn radius_and_slope(a: &Corners, b: &Corners, y: f32) -> (f32, f32) {
+    let (position, derivative) = along(a, b, y);
+    let axis = Vec3::new(position.x, position.y, 0.0);
     let out = axis.normalize_or(Vec3::X);
-    (axis.length(), jet.derivative.dot(out) / jet.derivative.z)
+    (axis.length(), derivative.dot(out) / derivative.z)
 }
 
 /// What a ring's taper is between two others: the straight slope over both, as steep as is allowed.
@@ -165,16 +167,15 @@ fn radius_is_the_traced_one_at_rings_and_between_the_two_on_the_way() {
             for (start, end) in roles.into_iter().flat_map(|a| roles.map(|b| (a, b))) {
                 let a = along_z(0.0, from, near, start);
                 let b = along_z(3.0, to, far, end);
-                let curve = EdgeCurve::new(EdgeKind::Along, &a, &b, Path::Hermite);
-                assert_eq!(
-                    (curve.radius(0.0), curve.at(0.0).position),
-                    (from, a.position)
-                );
-                assert!((curve.radius(1.0) - to).abs() < 1e-6 * to);
+                let curves = EdgeCurves::new(EdgeKind::Along, &a, &b, Path::Hermite);
+                let radius = |y: f32| curves.radius(F32x4::splat(y)).x;
+                let start = along(&a, &b, 0.0).0;
+                assert_eq!((radius(0.0), start), (from, a.position.each()[0]));
+                assert!((radius(1.0) - to).abs() < 1e-6 * to);
                 let mut last = from;
                 for k in 1..=64 {
                     let y = k as f32 / 64.0;
-                    let radius = curve.radius(y);
+                    let radius = radius(y);
                     let forwards = (radius - last) * (to - from).signum();
                     assert!(
                         forwards >= -2e-6 * from.max(to),

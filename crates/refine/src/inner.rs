@@ -1,0 +1,212 @@
+//! The inner vertices of edges and patches, four edges or patches of a kind at once.
+
+use glam::Vec3;
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, TracingPoint, Vertex};
+
+use crate::RefineOptions;
+use crate::evaluate::{
+    Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes,
+};
+use crate::fours::four;
+use crate::plan::{Edge, Grid};
+
+/// What a vertex shows of the cell: type, sample and section of its tracing point.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    kind: i32,
+    point: i32,
+    section: i32,
+}
+
+impl Shown {
+    #[inline(always)]
+    fn new(point: &TracingPoint) -> Self {
+        Self {
+            kind: point.kind.0,
+            point: point.sample.0,
+            section: point.section.0,
+        }
+    }
+
+    /// What the halves of an edge show.
+    #[inline(always)]
+    fn of_halves(mesh: &CoarseMesh, kind: EdgeKind, edge: &Edge) -> [Self; 2] {
+        let [start, end] = [tracing(mesh, edge.from), tracing(mesh, edge.to)];
+        let [near, far] = match kind {
+            // What leads from a fork to a branch is the branch's.
+            EdgeKind::Loft => [end, end],
+            EdgeKind::Along if start.role == Role::Joint => [end, end],
+            // All of a soma's edge is the soma's, so that the color changes at the neurite's ring.
+            EdgeKind::Soma if start.role == Role::Soma => [start, start],
+            EdgeKind::Soma if end.role == Role::Soma => [end, end],
+            EdgeKind::Ring | EdgeKind::Along | EdgeKind::Soma => [start, end],
+        };
+        [Self::new(near), Self::new(far)]
+    }
+
+    /// What the quarters of a patch show, in the order of its corners.
+    #[inline]
+    fn of_quarters(mesh: &CoarseMesh, patch: usize) -> [Self; 4] {
+        let Patch { corners, kind } = mesh.patches[patch];
+        let points = four(|k| tracing(mesh, corners[k]));
+        let [_, _, c, d] = points;
+        let of_end = [d, c, c, d];
+        let quarters = match kind {
+            PatchKind::Loft => of_end,
+            PatchKind::Lateral if points[0].role == Role::Joint => of_end,
+            PatchKind::Soma => {
+                let soma = points.iter().find(|point| point.role == Role::Soma);
+                soma.map_or(points, |&soma| [soma; 4])
+            }
+            PatchKind::Lateral | PatchKind::Cap => points,
+        };
+        four(|k| Self::new(quarters[k]))
+    }
+
+    #[inline(always)]
+    fn vertex(&self, position: Vec3, normal: Vec3, radius: f32) -> SurfaceVertex {
+        let Self {
+            kind,
+            point,
+            section,
+        } = *self;
+        SurfaceVertex {
+            position,
+            normal,
+            kind,
+            point,
+            section,
+            radius,
+        }
+    }
+}
+
+/// A vertex of the coarse mesh.
+#[inline]
+pub(crate) fn coarse_vertex(mesh: &CoarseMesh, vertex: &Vertex) -> SurfaceVertex {
+    let tracing = &mesh.tracing[vertex.tracing as usize];
+    Shown::new(tracing).vertex(vertex.position, vertex.normal, tracing.radius)
+}
+
+#[inline(always)]
+fn tracing(mesh: &CoarseMesh, vertex: u32) -> &TracingPoint {
+    &mesh.tracing[mesh.vertices[vertex as usize].tracing as usize]
+}
+
+/// The vertices that are shown for four points.
+#[inline(always)]
+fn vertices(points: &Points, radii: F32x4, shown: [&Shown; 4]) -> [SurfaceVertex; 4] {
+    let (positions, normals) = (points.position.each(), points.normal.each());
+    let radii = radii.to_array();
+    four(|k| shown[k].vertex(positions[k], normals[k], radii[k]))
+}
+
+/// Inner vertices of four edges of one kind and level.
+pub(crate) struct InnerEdges<'c> {
+    curves: EdgeCurves<'c>,
+    normals: EdgeNormals,
+    level: u16,
+    /// What the two halves of each show.
+    shown: [[Shown; 2]; 4],
+}
+
+impl<'c> InnerEdges<'c> {
+    /// `kind`: that of all four.
+    #[inline(always)]
+    pub(crate) fn new(
+        mesh: &CoarseMesh,
+        options: &RefineOptions,
+        kind: EdgeKind,
+        edges: [&Edge; 4],
+        [a, b]: &'c [Corners; 2],
+    ) -> Self {
+        Self {
+            curves: EdgeCurves::new(kind, a, b, options.path),
+            normals: EdgeNormals::new(kind, a, b),
+            level: edges[0].level,
+            shown: four(|k| Shown::of_halves(mesh, kind, edges[k])),
+        }
+    }
+
+    /// Vertex k of each, 0 < k < level.
+    #[inline(always)]
+    pub(crate) fn vertices(&self, k: u32) -> [SurfaceVertex; 4] {
+        let t = k as f32 / f32::from(self.level);
+        let half = usize::from(t >= 0.5);
+        let t = F32x4::splat(t);
+        let jets = self.curves.at(t);
+        let points = Points {
+            position: jets.position,
+            normal: self.normals.at(jets.derivative, t),
+        };
+        let shown = four(|k| &self.shown[k][half]);
+        vertices(&points, self.curves.radius(t), shown)
+    }
+}
+
+/// Index in [`Shown::of_quarters`] of a vertex at column i of row j.
+#[inline(always)]
+fn quarter(grid: &Grid, i: u32, j: u32) -> usize {
+    let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
+    match (x >= 0.5, y >= 0.5) {
+        (false, false) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
+        (false, true) => 3,
+    }
+}
+
+/// Calls `put` with column i, row j and a vertex of each, for all that are inside four lateral patches with this grid.
+#[inline(always)]
+pub(crate) fn lateral_vertices(
+    mesh: &CoarseMesh,
+    options: &RefineOptions,
+    patches: [usize; 4],
+    grid: &Grid,
+    mut put: impl FnMut([u32; 2], [SurfaceVertex; 4]),
+) {
+    let corners = Corners::of_patches(mesh, four(|k| mesh.patches[patches[k]].corners));
+    let shown = four(|k| Shown::of_quarters(mesh, patches[k]));
+    let tubes = Tubes::new(&corners, options.path);
+    for j in 1..grid.ny {
+        let y = F32x4::splat(j as f32 / grid.ny as f32);
+        let (row, radius) = (tubes.row(y), tubes.radius(y));
+        for i in 1..grid.nx {
+            let points = row.points(F32x4::splat(i as f32 / grid.nx as f32));
+            let quarter = quarter(grid, i, j);
+            let shown = four(|k| &shown[k][quarter]);
+            put([i, j], vertices(&points, radius, shown));
+        }
+    }
+}
+
+/// The same for a patch of another kind, with one vertex.
+pub(crate) fn other_vertices(
+    mesh: &CoarseMesh,
+    options: &RefineOptions,
+    patch: usize,
+    (shape, grid): (&PatchShape, &Grid),
+    mut put: impl FnMut([u32; 2], SurfaceVertex),
+) {
+    let shown = Shown::of_quarters(mesh, patch);
+    shape.for_each_inside(options, [grid.nx, grid.ny], |[i, j], points, radii| {
+        let of = four(|k| &shown[quarter(grid, i + k as u32, j)]);
+        for (i, vertex) in (i..grid.nx).zip(vertices(&points, radii, of)) {
+            put([i, j], vertex);
+        }
+    });
+}
+
+/// The vertex at column i of row j inside a patch.
+pub(crate) fn inner_vertex(
+    mesh: &CoarseMesh,
+    options: &RefineOptions,
+    patch: usize,
+    (shape, grid): (&PatchShape, &Grid),
+    [i, j]: [u32; 2],
+) -> SurfaceVertex {
+    let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
+    let (position, normal) = shape.interior(options, x, y);
+    let shown = Shown::of_quarters(mesh, patch)[quarter(grid, i, j)];
+    shown.vertex(position, normal, shape.radius(options, x, y))
+}
