@@ -70,7 +70,7 @@ impl AdaptiveSettings {
         RefineOptions {
             path: self.path,
             caps: self.caps,
-            quads: false,
+            ..RefineOptions::default()
         }
     }
 }

@@ -49,20 +49,6 @@ impl Vertices {
         self.vertices.push(vertex);
     }
 
-    /// All of these, one after the other.
-    pub(crate) fn joined(parts: Vec<Self>) -> Self {
-        let mut parts = parts.into_iter();
-        let mut all = parts.next().unwrap_or_default();
-        for part in parts {
-            let first = all.vertices.len() as u32;
-            let behind = part.behind.into_iter();
-            all.behind
-                .extend(behind.map(|(index, at)| (first + index, at)));
-            all.vertices.extend(part.vertices);
-        }
-        all
-    }
-
     fn is_behind(&self, index: u32) -> bool {
         self.vertices[index as usize].place.nearness <= 0.0
     }
@@ -76,7 +62,15 @@ impl Vertices {
     }
 }
 
-/// Triangles of a surface that a task made.
+/// What a task made of a surface: vertices, and triangles by tile.
+pub(crate) struct Piece {
+    vertices: Vec<Vertex>,
+    triangles: Vec<Triangle>,
+    /// Tile and triangle, by tile.
+    bins: Vec<(u32, u32)>,
+}
+
+/// Triangles of a surface that a task makes.
 #[derive(Default)]
 pub(crate) struct Bins {
     /// Indices of vertices; those beyond the surface's are in `clipped`. Their places run around them clockwise on the grid,
@@ -97,20 +91,12 @@ pub(crate) struct Triangle {
     pub(crate) is_half: bool,
 }
 
-impl Bins {
+impl Piece {
     /// The vertices of a triangle.
-    pub(crate) fn corners<'a>(
-        &'a self,
-        vertices: &'a [Vertex],
-        triangle: &Triangle,
-    ) -> [&'a Vertex; 3] {
-        triangle.corners.map(|corner| {
-            let corner = corner as usize;
-            match vertices.get(corner) {
-                Some(vertex) => vertex,
-                None => &self.clipped[corner - vertices.len()],
-            }
-        })
+    pub(crate) fn corners(&self, triangle: &Triangle) -> [&Vertex; 3] {
+        triangle
+            .corners
+            .map(|corner| &self.vertices[corner as usize])
     }
 
     /// The triangles of a tile.
@@ -122,7 +108,9 @@ impl Bins {
             .iter()
             .map(|&(_, triangle)| &self.triangles[triangle as usize])
     }
+}
 
+impl Bins {
     /// Adds a triangle, if it may cover a sample. `two_sided`: also one whose back shows.
     pub(crate) fn add(
         &mut self,
@@ -247,8 +235,8 @@ impl Bins {
         polygon
     }
 
-    /// Sorts by tile; within one in the order in which they came.
-    pub(crate) fn sort(&mut self, tiles: usize) {
+    /// With its vertices, and triangles by tile; within one in the order in which they came.
+    pub(crate) fn finished(self, vertices: Vertices, tiles: usize) -> Piece {
         let mut starts = vec![0_u32; tiles + 1];
         for bin in &self.bins {
             starts[bin.0 as usize + 1] += 1;
@@ -256,12 +244,18 @@ impl Bins {
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut sorted = vec![(0, 0); self.bins.len()];
+        let mut bins = vec![(0, 0); self.bins.len()];
         for bin in &self.bins {
             let place = &mut starts[bin.0 as usize];
-            sorted[*place as usize] = *bin;
+            bins[*place as usize] = *bin;
             *place += 1;
         }
-        self.bins = sorted;
+        let mut vertices = vertices.vertices;
+        vertices.extend(self.clipped);
+        Piece {
+            vertices,
+            triangles: self.triangles,
+            bins,
+        }
     }
 }

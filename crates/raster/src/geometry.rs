@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use glam::Vec3;
-use neurotess_mesh::{Faces, Role, Surface, SurfaceVertex};
+use neurotess_mesh::{Role, SurfaceVertex, TracingPoint};
 use neurotess_picture::color::ColorTable;
 use neurotess_picture::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
 use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint};
-use neurotess_refine::Refinement;
+use neurotess_refine::{PatchBlock, PointNumbers, RefineOptions, Refinement};
 use rayon::prelude::*;
 
 use crate::bins::{Bins, Projected, Triangle, Vertex, Vertices};
@@ -16,13 +16,13 @@ use crate::grid::Grid;
 use crate::picture::Counts;
 use crate::projection::Projection;
 use crate::scene::{Scene, SceneTemplate};
-use crate::select::{Placed, selected};
+use crate::select::{Placed, shown};
 use crate::triangle::Drawn;
 
 /// Instance of what is no neuron: beyond all instances, so it has neither values nor a state.
 pub(crate) const NO_INSTANCE: u32 = u32::MAX - 1;
-/// Blocks of a refinement, of about a thousand edges or patches each, that a task makes.
-const TOGETHER: usize = 16;
+/// Blocks of a refinement, of some hundred patches each, that a task makes.
+const TOGETHER: usize = 32;
 
 /// How a band is drawn.
 pub(crate) struct Painting<'a> {
@@ -178,41 +178,23 @@ pub(crate) fn drawn<'a>(
 ) -> Option<Drawn<'a>> {
     let template = &scene.templates[job.instance.template.0 as usize];
     let placed = Placed::new(painting, job.instance, template.template.mesh);
-    let mesh = selected(template, &placed, painting)?;
+    let shown = shown(template, &placed, painting)?;
+    let mesh = template.template.mesh;
+    let options = RefineOptions {
+        numbers: PointNumbers::OfTracing,
+        ..scene.settings.options()
+    };
     let lod = placed.lod(&scene.settings, template);
-    let refinement = Refinement::new(&mesh, lod, &scene.settings.options());
-    counts.add(&mesh, &refinement);
+    let refinement = Refinement::of_patches(mesh, lod, &options, &shown);
+    counts.add(&shown, &refinement);
     let projection = painting.projection;
-    let make = Making {
+    let making = Making {
         placed: &placed,
         projection,
         ghosted: painting.look.ghosted,
         state: job.instance.state,
-        is_soma: template
-            .template
-            .mesh
-            .tracing
-            .iter()
-            .map(|t| t.role == Role::Soma)
-            .collect(),
+        tracing: &mesh.tracing,
     };
-    let blocks: Vec<usize> = (0..refinement.vertex_blocks()).collect();
-    let parts: Vec<Vertices> = blocks
-        .par_chunks(TOGETHER)
-        .map(|blocks| {
-            let mut refined = Vec::new();
-            blocks
-                .iter()
-                .for_each(|&block| refinement.vertices(block, &mut refined));
-            let mut made = Vertices::default();
-            made.vertices.reserve(refined.len());
-            refined
-                .iter()
-                .for_each(|vertex| made.push(make.vertex(vertex)));
-            made
-        })
-        .collect();
-    let vertices = Vertices::joined(parts);
     let keys = keys_of(template);
     let colors: Cow<'a, [[f32; 4]]> = match (job.shared, job.instance.state & HIGHLIGHTED) {
         (Some(shared), 0) => Cow::Borrowed(shared),
@@ -232,32 +214,34 @@ pub(crate) fn drawn<'a>(
             .map(|normal| -projection.in_view(normal) * 32767.0),
         wire: painting.wire,
     };
-    let blocks: Vec<usize> = (0..refinement.face_blocks()).collect();
-    let bins = blocks
-        .par_chunks(TOGETHER)
-        .map(|blocks| {
-            let mut bins = Bins::default();
-            let mut faces = Faces::default();
-            for &block in blocks {
-                faces.triangles.clear();
-                refinement.faces(block, &mut faces);
-                for &corners in &faces.triangles {
-                    let triangle = Triangle {
-                        corners,
-                        is_front: true,
-                        is_half: false,
-                    };
-                    let around = (painting.grid, projection);
-                    bins.add(around, &vertices, triangle, paint.is_two_sided());
-                }
+    let blocks: Vec<usize> = (0..refinement.patch_blocks()).collect();
+    let pieces = blocks.par_chunks(TOGETHER).map(|blocks| {
+        let mut vertices = Vertices::default();
+        let mut bins = Bins::default();
+        let mut refined = PatchBlock::default();
+        for &block in blocks {
+            refinement.patch_block(block, &mut refined);
+            let first = vertices.vertices.len() as u32;
+            let made = refined.vertices.iter();
+            made.for_each(|vertex| vertices.push(making.vertex(vertex)));
+            for corners in &refined.faces.triangles {
+                let triangle = Triangle {
+                    corners: corners.map(|corner| first + corner),
+                    is_front: true,
+                    is_half: false,
+                };
+                bins.add(
+                    (painting.grid, projection),
+                    &vertices,
+                    triangle,
+                    paint.is_two_sided(),
+                );
             }
-            bins.sort(painting.grid.len());
-            bins
-        })
-        .collect();
+        }
+        bins.finished(vertices, painting.grid.len())
+    });
     Some(Drawn {
-        vertices: vertices.vertices,
-        bins,
+        pieces: pieces.collect(),
         paint,
         perspective: projection.is_perspective(),
     })
@@ -269,14 +253,13 @@ struct Making<'a> {
     projection: &'a Projection,
     ghosted: f32,
     state: u32,
-    /// By tracing point.
-    is_soma: Vec<bool>,
+    tracing: &'a [TracingPoint],
 }
 
 impl Making<'_> {
     fn vertex(&self, refined: &SurfaceVertex) -> Projected {
         let point = refined.point as u32;
-        let is_soma = self.is_soma[point as usize];
+        let is_soma = self.tracing[point as usize].role == Role::Soma;
         let radius = if is_soma {
             0.0
         } else {

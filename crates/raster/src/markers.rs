@@ -87,11 +87,10 @@ impl SceneMarkers {
                 bins.add((painting.grid, projection), &vertices, triangle, false);
             }
         }
-        bins.sort(painting.grid.len());
+        let piece = bins.finished(vertices, painting.grid.len());
         let keys: Vec<u32> = markers.iter().map(|marker| marker.color_key).collect();
         Drawn {
-            vertices: vertices.vertices,
-            bins: vec![bins],
+            pieces: vec![piece],
             paint: Paint {
                 colors: Cow::Owned(painting.colors.of_keys(&keys, NO_INSTANCE, 0)),
                 keys: Cow::Owned(keys),

@@ -15,7 +15,7 @@ use crate::geometry::{NO_INSTANCE, Painting, vertex};
 use crate::projection::Projection;
 use crate::triangle::Drawn;
 
-/// Vertices or triangles that a task takes.
+/// Triangles that a task takes.
 const TOGETHER: usize = 1 << 14;
 
 /// A surface that is no cell, such as a brain region.
@@ -55,48 +55,41 @@ impl SceneMesh {
         let offset = (self.origin * look.scale - projection.eye).as_vec3();
         let scale = look.scale as f32;
         let has_keys = !lit.keys.is_empty();
-        let parts = lit.vertices.par_chunks(TOGETHER).enumerate();
-        let parts: Vec<Vertices> = parts
-            .map(|(part, vertices)| {
-                let mut made = Vertices::default();
-                for (index, &[position, normal]) in vertices.iter().enumerate() {
-                    let point = if has_keys { part * TOGETHER + index } else { 0 };
-                    let position = scale * position + offset;
-                    made.push(vertex(projection, position, normal, point as u32));
-                }
-                made
-            })
-            .collect();
-        let vertices = Vertices::joined(parts);
         let sheet = Sheet {
             number,
             opacity: look.opacity.clamp(0.0, 1.0),
             edges: look.edges,
             projection: *projection,
         };
+        let on_grid = |corner: u32| {
+            let [position, normal] = lit.vertices[corner as usize];
+            let point = if has_keys { corner } else { 0 };
+            vertex(projection, scale * position + offset, normal, point)
+        };
         let parts = lit.triangles.par_chunks(TOGETHER).enumerate();
-        let bins = parts
-            .map(|(part, triangles)| {
-                let mut bins = Bins::default();
-                for (index, &corners) in triangles.iter().enumerate() {
-                    let triangle = Triangle {
-                        corners,
-                        is_front: true,
-                        is_half: part * TOGETHER + index >= lit.first_half,
-                    };
-                    bins.add((painting.grid, projection), &vertices, triangle, true);
-                }
-                bins.sort(painting.grid.len());
-                bins
-            })
-            .collect();
+        let pieces = parts.map(|(part, triangles)| {
+            let mut vertices = Vertices::default();
+            let mut bins = Bins::default();
+            for (index, &corners) in triangles.iter().enumerate() {
+                let first = vertices.vertices.len() as u32;
+                let made = corners.map(on_grid);
+                made.into_iter().for_each(|vertex| vertices.push(vertex));
+                let triangle = Triangle {
+                    corners: [first, first + 1, first + 2],
+                    is_front: true,
+                    is_half: part * TOGETHER + index >= lit.first_half,
+                };
+                bins.add((painting.grid, projection), &vertices, triangle, true);
+            }
+            bins.finished(vertices, painting.grid.len())
+        });
+        let pieces = pieces.collect();
         let keys: Cow<'a, [u32]> = match has_keys {
             true => Cow::Borrowed(&lit.keys),
             false => Cow::Owned(vec![look.color_key]),
         };
         Some(Drawn {
-            vertices: vertices.vertices,
-            bins,
+            pieces,
             paint: Paint {
                 colors: Cow::Owned(painting.colors.of_keys(&keys, NO_INSTANCE, 0)),
                 keys,

@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use neurotess_mesh::{CoarseMesh, Surface as _};
+use neurotess_mesh::Surface as _;
 use neurotess_picture::color::{ColorTable, linear};
 use neurotess_picture::{Image, LARGEST, PictureOptions, Viewpoint, Watch};
 use neurotess_refine::{HIGHEST_LEVEL, Refinement};
@@ -75,13 +75,14 @@ impl Default for Counts {
 }
 
 impl Counts {
-    pub(crate) fn add(&self, mesh: &CoarseMesh, refinement: &Refinement<'_>) {
+    pub(crate) fn add(&self, shown: &[bool], refinement: &Refinement<'_>) {
         let add = |to: &AtomicU64, count: usize| to.fetch_add(count as u64, Ordering::Relaxed);
-        add(&self.patches, mesh.patches.len());
+        let shown = || shown.iter().enumerate().filter(|(_, shown)| **shown);
+        add(&self.patches, shown().count());
         add(&self.vertices, refinement.vertex_count());
         add(&self.triangles, refinement.triangle_count());
         let mut levels = [0; HIGHEST_LEVEL as usize + 1];
-        for patch in 0..mesh.patches.len() {
+        for (patch, _) in shown() {
             for level in refinement.patch_levels(patch) {
                 levels[level as usize] += 1;
             }

@@ -1,10 +1,9 @@
 //! What is drawn.
 
+use glam::Vec3;
 use neurotess_mesh::CoarseMesh;
-use neurotess_picture::bounds;
-use neurotess_picture::{
-    AdaptiveSettings, BoundingSphere, Instance, SceneError, Template, check_placement,
-};
+use neurotess_picture::{AdaptiveSettings, Instance, SceneError, Template, check_placement};
+use neurotess_refine::{patch_sphere, sphere_around};
 use rayon::prelude::*;
 
 use crate::markers::SceneMarkers;
@@ -22,12 +21,9 @@ pub struct Scene<'a> {
 /// A template and where it is.
 pub(crate) struct SceneTemplate<'a> {
     pub(crate) template: Template<'a>,
-    /// Spheres that hold it, relative to nothing (µm).
-    pub(crate) spheres: Vec<BoundingSphere>,
+    /// A sphere that holds it, relative to its origin (µm).
+    pub(crate) sphere: (Vec3, f32),
 }
-
-/// Most spheres of a template.
-const SPHERES: usize = 64;
 
 impl<'a> Scene<'a> {
     /// Checks every instance.
@@ -42,9 +38,11 @@ impl<'a> Scene<'a> {
         for (index, instance) in instances.iter().enumerate() {
             check_placement(index, instance, templates.len())?;
         }
-        let around = |mesh: &CoarseMesh| bounds::merged(&bounds::bounds(mesh), SPHERES);
+        let around = |mesh: &CoarseMesh| {
+            sphere_around(mesh.patches.iter().map(|patch| patch_sphere(mesh, patch)))
+        };
         let templates = templates.into_par_iter().map(|template| SceneTemplate {
-            spheres: around(template.mesh),
+            sphere: around(template.mesh),
             template,
         });
         Ok(Self {

@@ -1,9 +1,7 @@
 //! Where an instance is, which of its patches show, and at which levels. Twin of `decide` in render's cull.rs.
 
-use std::borrow::Cow;
-
 use glam::{Mat3, Vec3, Vec4};
-use neurotess_mesh::{CoarseMesh, SampleId};
+use neurotess_mesh::{CoarseMesh, Patch};
 use neurotess_picture::bounds::shows;
 use neurotess_picture::{AdaptiveSettings, CullView, Instance};
 use neurotess_refine::{Lod, LodView, patch_sphere};
@@ -74,44 +72,22 @@ impl Placed {
     }
 }
 
-/// The part of a template that shows, whose samples are numbers of its tracing points; none if nothing shows. Levels depend
-/// on edges alone, so that the part is refined as in the whole.
-pub(crate) fn selected<'a>(
-    template: &SceneTemplate<'a>,
+/// Which patches of a template show; none if nothing does.
+pub(crate) fn shown(
+    template: &SceneTemplate<'_>,
     placed: &Placed,
     painting: &Painting<'_>,
-) -> Option<Cow<'a, CoarseMesh>> {
+) -> Option<Vec<bool>> {
     let mesh = template.template.mesh;
-    let any = template.spheres.iter().any(|&(center, radius)| {
-        placed.shows(painting, (center - mesh.origin).as_vec3(), radius as f32)
-    });
-    if !any {
+    let (center, radius) = template.sphere;
+    if !placed.shows(painting, center, radius) {
         return None;
     }
-    let shown = |patch: &neurotess_mesh::Patch| {
+    let shows = |patch: &Patch| {
         let (center, radius) = patch_sphere(mesh, patch);
         placed.shows(painting, center, radius)
     };
-    let flags: Vec<bool> = mesh
-        .patches
-        .par_iter()
-        .with_min_len(4096)
-        .map(shown)
-        .collect();
-    let mut part = CoarseMesh {
-        patches: Vec::new(),
-        ..mesh.clone()
-    };
-    let pairs = mesh.patches.iter().zip(&flags);
-    part.patches = pairs
-        .filter(|(_, shows)| **shows)
-        .map(|(patch, _)| *patch)
-        .collect();
-    if part.patches.is_empty() {
-        return None;
-    }
-    for (point, index) in part.tracing.iter_mut().zip(0..) {
-        point.sample = SampleId(index);
-    }
-    Some(Cow::Owned(part))
+    let patches = mesh.patches.par_iter().with_min_len(4096);
+    let shown: Vec<bool> = patches.map(shows).collect();
+    shown.contains(&true).then_some(shown)
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::bins::{Bins, Triangle, Vertex};
+use crate::bins::{Piece, Triangle, Vertex};
 use crate::fragment::{Fragment, Paint, lines, mask_of};
 use crate::grid::{Grid, IN_TILE, TILE};
 use crate::projection::STEPS;
@@ -31,10 +31,9 @@ impl<H: Held, const S: usize> Tile<H, S> {
 
 /// A surface on the grid.
 pub(crate) struct Drawn<'a> {
-    pub(crate) vertices: Vec<Vertex>,
-    pub(crate) bins: Vec<Bins>,
+    pub(crate) pieces: Vec<Piece>,
     pub(crate) paint: Paint<'a>,
-    /// Whether samples behind it stay as they are where it lies: a sheet.
+    /// Whether what is linear in space is divided by depth on the grid.
     pub(crate) perspective: bool,
 }
 
@@ -47,10 +46,10 @@ pub(crate) fn rasterize<H: Held, const S: usize>(
     tiles.par_iter_mut().enumerate().for_each(|(index, slot)| {
         let corner = grid.corner(index);
         for surface in surfaces {
-            for bins in &surface.bins {
-                for triangle in bins.of_tile(index as u32) {
+            for piece in &surface.pieces {
+                for triangle in piece.of_tile(index as u32) {
                     let tile = slot.get_or_insert_with(Tile::new);
-                    let corners = bins.corners(&surface.vertices, triangle);
+                    let corners = piece.corners(triangle);
                     Rasterizer {
                         corner,
                         grid,

@@ -1,14 +1,14 @@
 //! The inner vertices of edges and patches, four edges or patches of a kind at once.
 
 use glam::Vec3;
-use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, TracingPoint, Vertex};
+use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, Vertex};
 
-use crate::RefineOptions;
 use crate::evaluate::{
     Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes,
 };
 use crate::fours::four;
 use crate::plan::{Edge, Grid};
+use crate::{PointNumbers, RefineOptions};
 
 /// What a vertex shows of the cell: type, sample and section of its tracing point.
 #[derive(Clone, Copy, Debug)]
@@ -19,48 +19,63 @@ struct Shown {
 }
 
 impl Shown {
+    /// `index`: of the tracing point.
     #[inline(always)]
-    fn new(point: &TracingPoint) -> Self {
+    fn new(mesh: &CoarseMesh, options: &RefineOptions, index: u32) -> Self {
+        let point = &mesh.tracing[index as usize];
         Self {
             kind: point.kind.0,
-            point: point.sample.0,
+            point: match options.numbers {
+                PointNumbers::OfSamples => point.sample.0,
+                PointNumbers::OfTracing => index as i32,
+            },
             section: point.section.0,
         }
     }
 
     /// What the halves of an edge show.
     #[inline(always)]
-    fn of_halves(mesh: &CoarseMesh, kind: EdgeKind, edge: &Edge) -> [Self; 2] {
+    fn of_halves(
+        mesh: &CoarseMesh,
+        options: &RefineOptions,
+        kind: EdgeKind,
+        edge: &Edge,
+    ) -> [Self; 2] {
         let [start, end] = [tracing(mesh, edge.from), tracing(mesh, edge.to)];
+        let role = |index: u32| mesh.tracing[index as usize].role;
         let [near, far] = match kind {
             // What leads from a fork to a branch is the branch's.
             EdgeKind::Loft => [end, end],
-            EdgeKind::Along if start.role == Role::Joint => [end, end],
+            EdgeKind::Along if role(start) == Role::Joint => [end, end],
             // All of a soma's edge is the soma's, so that the color changes at the neurite's ring.
-            EdgeKind::Soma if start.role == Role::Soma => [start, start],
-            EdgeKind::Soma if end.role == Role::Soma => [end, end],
+            EdgeKind::Soma if role(start) == Role::Soma => [start, start],
+            EdgeKind::Soma if role(end) == Role::Soma => [end, end],
             EdgeKind::Ring | EdgeKind::Along | EdgeKind::Soma => [start, end],
         };
-        [Self::new(near), Self::new(far)]
+        [
+            Self::new(mesh, options, near),
+            Self::new(mesh, options, far),
+        ]
     }
 
     /// What the quarters of a patch show, in the order of its corners.
     #[inline]
-    fn of_quarters(mesh: &CoarseMesh, patch: usize) -> [Self; 4] {
+    fn of_quarters(mesh: &CoarseMesh, options: &RefineOptions, patch: usize) -> [Self; 4] {
         let Patch { corners, kind } = mesh.patches[patch];
         let points = four(|k| tracing(mesh, corners[k]));
+        let role = |index: u32| mesh.tracing[index as usize].role;
         let [_, _, c, d] = points;
         let of_end = [d, c, c, d];
         let quarters = match kind {
             PatchKind::Loft => of_end,
-            PatchKind::Lateral if points[0].role == Role::Joint => of_end,
+            PatchKind::Lateral if role(points[0]) == Role::Joint => of_end,
             PatchKind::Soma => {
-                let soma = points.iter().find(|point| point.role == Role::Soma);
+                let soma = points.iter().find(|&&point| role(point) == Role::Soma);
                 soma.map_or(points, |&soma| [soma; 4])
             }
             PatchKind::Lateral | PatchKind::Cap => points,
         };
-        four(|k| Self::new(quarters[k]))
+        four(|k| Self::new(mesh, options, quarters[k]))
     }
 
     #[inline(always)]
@@ -83,14 +98,19 @@ impl Shown {
 
 /// A vertex of the coarse mesh.
 #[inline]
-pub(crate) fn coarse_vertex(mesh: &CoarseMesh, vertex: &Vertex) -> SurfaceVertex {
-    let tracing = &mesh.tracing[vertex.tracing as usize];
-    Shown::new(tracing).vertex(vertex.position, vertex.normal, tracing.radius)
+pub(crate) fn coarse_vertex(
+    mesh: &CoarseMesh,
+    options: &RefineOptions,
+    vertex: &Vertex,
+) -> SurfaceVertex {
+    let radius = mesh.tracing[vertex.tracing as usize].radius;
+    Shown::new(mesh, options, vertex.tracing).vertex(vertex.position, vertex.normal, radius)
 }
 
+/// Index of the tracing point of a vertex.
 #[inline(always)]
-fn tracing(mesh: &CoarseMesh, vertex: u32) -> &TracingPoint {
-    &mesh.tracing[mesh.vertices[vertex as usize].tracing as usize]
+fn tracing(mesh: &CoarseMesh, vertex: u32) -> u32 {
+    mesh.vertices[vertex as usize].tracing
 }
 
 /// The vertices that are shown for four points.
@@ -124,7 +144,7 @@ impl<'c> InnerEdges<'c> {
             curves: EdgeCurves::new(kind, a, b, options.path),
             normals: EdgeNormals::new(kind, a, b),
             level: edges[0].level,
-            shown: four(|k| Shown::of_halves(mesh, kind, edges[k])),
+            shown: four(|k| Shown::of_halves(mesh, options, kind, edges[k])),
         }
     }
 
@@ -166,7 +186,7 @@ pub(crate) fn lateral_vertices(
     mut put: impl FnMut([u32; 2], [SurfaceVertex; 4]),
 ) {
     let corners = Corners::of_patches(mesh, four(|k| mesh.patches[patches[k]].corners));
-    let shown = four(|k| Shown::of_quarters(mesh, patches[k]));
+    let shown = four(|k| Shown::of_quarters(mesh, options, patches[k]));
     let tubes = Tubes::new(&corners, options.path);
     for j in 1..grid.ny {
         let y = F32x4::splat(j as f32 / grid.ny as f32);
@@ -188,7 +208,7 @@ pub(crate) fn other_vertices(
     (shape, grid): (&PatchShape, &Grid),
     mut put: impl FnMut([u32; 2], SurfaceVertex),
 ) {
-    let shown = Shown::of_quarters(mesh, patch);
+    let shown = Shown::of_quarters(mesh, options, patch);
     shape.for_each_inside(options, [grid.nx, grid.ny], |[i, j], points, radii| {
         let of = four(|k| &shown[quarter(grid, i + k as u32, j)]);
         for (i, vertex) in (i..grid.nx).zip(vertices(&points, radii, of)) {
@@ -207,6 +227,6 @@ pub(crate) fn inner_vertex(
 ) -> SurfaceVertex {
     let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
     let (position, normal) = shape.interior(options, x, y);
-    let shown = Shown::of_quarters(mesh, patch)[quarter(grid, i, j)];
+    let shown = Shown::of_quarters(mesh, options, patch)[quarter(grid, i, j)];
     shown.vertex(position, normal, shape.radius(options, x, y))
 }

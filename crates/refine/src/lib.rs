@@ -49,7 +49,7 @@ pub use coarse_surface::CoarseSurface;
 pub use decode::{POINTS_OF_SPHERE, SHAPED_U32S};
 pub use evaluate::SOMA_FILLET;
 pub use level::{HIGHEST_LEVEL, HIGHEST_LEVEL_BY_LENGTH};
-pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, RefineOptions};
+pub use options::{Caps, EdgeRule, Lod, LodCriterion, LodView, Path, PointNumbers, RefineOptions};
 pub use pack::{dequantized, pack};
 pub use part::{MeshPart, PATCHES_OF_SPHERE, PartLayout};
 pub use patch_block::PatchBlock;

@@ -204,4 +204,16 @@ pub struct RefineOptions {
     pub caps: Caps,
     /// Whether cells with four different corners are quads instead of two triangles.
     pub quads: bool,
+    /// What [`SurfaceVertex::point`](neurotess_mesh::SurfaceVertex::point) says.
+    pub numbers: PointNumbers,
+}
+
+/// Numbers of the points of a surface's vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PointNumbers {
+    /// Those that the file has for its samples.
+    #[default]
+    OfSamples,
+    /// Indices of the mesh's tracing points: for what looks up what belongs to each.
+    OfTracing,
 }

@@ -92,7 +92,7 @@ impl Refinement<'_> {
         out.vertices.resize(next, SurfaceVertex::default());
         for (corner, place) in out.corners.all() {
             let vertex = &self.mesh.vertices[corner as usize];
-            out.vertices[place as usize] = coarse_vertex(self.mesh, vertex);
+            out.vertices[place as usize] = coarse_vertex(self.mesh, &self.options, vertex);
         }
         self.edge_vertices(edges, &mut out.vertices);
         self.patch_vertices(inside, &mut out.vertices);

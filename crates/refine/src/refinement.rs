@@ -113,7 +113,13 @@ impl<'m> Refinement<'m> {
         };
         let edges = &self.plan.patch_edges[patch];
         let found = edges.iter().find_map(on_edge);
-        found.unwrap_or_else(|| coarse_vertex(self.mesh, &self.mesh.vertices[index as usize]))
+        found.unwrap_or_else(|| {
+            coarse_vertex(
+                self.mesh,
+                &self.options,
+                &self.mesh.vertices[index as usize],
+            )
+        })
     }
 
     fn shape(&self, patch: usize) -> PatchShape {
@@ -279,7 +285,7 @@ impl Surface for Refinement<'_> {
             out.extend(
                 vertices
                     .iter()
-                    .map(|vertex| coarse_vertex(self.mesh, vertex)),
+                    .map(|vertex| coarse_vertex(self.mesh, &self.options, vertex)),
             );
         } else if block < corner_blocks + edge_blocks {
             let edges = range(block - corner_blocks, edges);

@@ -26,6 +26,7 @@ impl NamedOptions {
                 path: self.path.unwrap_or(usual.refine.path),
                 caps: self.caps.unwrap_or(usual.refine.caps),
                 quads: self.quads,
+                ..usual.refine
             },
             levels,
             crossings: self.crossings.unwrap_or(match self.simulation {

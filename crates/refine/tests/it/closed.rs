@@ -77,6 +77,7 @@ proptest! {
             path: if linear { Path::Linear } else { Path::Hermite },
             caps: if flat { Caps::Flat } else { Caps::Round },
             quads,
+            ..RefineOptions::default()
         };
         refined(mesh, LodCriterion::Homogeneous(1), &options, "level 1");
         refined(mesh, LodCriterion::Homogeneous(3), &options, "level 3");
