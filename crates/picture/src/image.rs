@@ -121,7 +121,8 @@ impl<W: Write + 'static> PngWriter<W> {
         });
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        encoder.set_compression(png::Compression::Balanced);
+        // Ten times as quick as the balanced one; files are a fifth to two fifths larger.
+        encoder.set_compression(png::Compression::Fast);
         let writer = encoder.write_header()?;
         Ok(Self {
             stream: writer.into_stream_writer()?,

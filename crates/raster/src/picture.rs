@@ -314,18 +314,15 @@ impl Painter<'_> {
             let corner = grid.corner(index);
             let mut made = LitTile::new();
             for place in 0..IN_TILE {
-                let nearness = &tile.nearness[place];
-                if nearness.iter().all(|&n| n == 0.0) {
+                if tile.is_empty(place) {
                     continue;
                 }
                 let to_eye = projection.eye_from(pixel_at(corner, place));
-                let color = &mut made.colors[place];
+                let mut sum = [0.0; 4];
+                let mut solid = None;
                 // Samples of one sub-pixel are mostly of one triangle.
                 let mut last: Option<(Surface, [f32; 3])> = None;
-                for (held, &near) in tile.held[place].iter().zip(nearness) {
-                    if near == 0.0 {
-                        continue;
-                    }
+                for (near, held) in tile.covered(place) {
                     let surface = held.surface();
                     let known = last.filter(|(same, _)| *same == surface);
                     let light = match known {
@@ -333,19 +330,22 @@ impl Painter<'_> {
                         None => {
                             let on = lights.on(surface, to_eye);
                             // The first sample that something solid covers stands for its sub-pixel.
-                            if made.depths[place] == 0.0 && !surface.is_translucent() {
-                                let depth = projection.depth(near);
-                                made.depths[place] = if depth == 0.0 { 1e-20 } else { depth };
-                                made.normals[place] = on.normal;
+                            if solid.is_none() && !surface.is_translucent() {
+                                solid = Some((projection.depth(near), on.normal));
                             }
                             lights.colored(surface, &on)
                         }
                     };
                     last = Some((surface, light));
                     for k in 0..3 {
-                        color[k] += light[k] * (1.0 / S as f32);
+                        sum[k] += light[k] * (1.0 / S as f32);
                     }
-                    color[3] += 1.0 / S as f32;
+                    sum[3] += 1.0 / S as f32;
+                }
+                made.colors[place] = sum;
+                if let Some((depth, normal)) = solid {
+                    made.depths[place] = if depth == 0.0 { 1e-20 } else { depth };
+                    made.normals[place] = normal;
                 }
             }
             Some(made)

@@ -197,14 +197,13 @@ impl<const S: usize> Gathering<'_, S> {
                 let Some(samples) = &self.tiles[tile] else {
                     continue;
                 };
-                if samples.nearness[place].iter().all(|&n| n == 0.0) {
+                if samples.is_empty(place) {
                     continue;
                 }
                 let reaching = share * light(tile, place);
                 let to_eye = projection.eye_from(pixel_at(self.band.grid.corner(tile), place));
                 let mut last = None;
-                for s in (0..S).filter(|&s| samples.nearness[place][s] > 0.0) {
-                    let held = &samples.held[place][s];
+                for (_, held) in samples.covered(place) {
                     let lit = match last {
                         Some((surface, lit)) if surface == held.surface => lit,
                         _ => lights.on(held.surface, to_eye),

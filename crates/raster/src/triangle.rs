@@ -13,17 +13,33 @@ const FOUR: [[i32; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
 /// Largest side (steps) of a triangle whose edge functions fit 32 bits everywhere around it.
 const SMALL: i32 = 64 * STEPS;
 
+/// Nearness of nothing. Not 0: memory that is full of zeros is there only when it is written to, and being read before
+/// takes the system twice as long.
+const NOTHING: f32 = -1.0;
+
 /// Samples of a tile, `S` of each sub-pixel.
 pub(crate) struct Tile<H, const S: usize> {
-    /// 0 where nothing is.
+    /// [`NOTHING`] where nothing is.
     pub(crate) nearness: Vec<[f32; S]>,
     pub(crate) held: Vec<[H; S]>,
 }
 
 impl<H: Held, const S: usize> Tile<H, S> {
+    /// Whether nothing covers a sub-pixel.
+    pub(crate) fn is_empty(&self, place: usize) -> bool {
+        self.nearness[place].iter().all(|&near| near < 0.0)
+    }
+
+    /// The samples of a sub-pixel that something covers: how near it is, and what is held of it.
+    pub(crate) fn covered(&self, place: usize) -> impl Iterator<Item = (f32, &H)> {
+        let samples = self.nearness[place].iter().zip(&self.held[place]);
+        let covered = samples.filter(|(near, _)| **near >= 0.0);
+        covered.map(|(&near, held)| (near, held))
+    }
+
     fn new() -> Self {
         Self {
-            nearness: vec![[0.0; S]; IN_TILE],
+            nearness: vec![[NOTHING; S]; IN_TILE],
             held: vec![[H::default(); S]; IN_TILE],
         }
     }
