@@ -6,7 +6,8 @@ use clap::Args;
 /// What to draw with.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct GpuArgs {
-    /// Adapter to draw with: a part of its name [default: NEUROTESS_ADAPTER, or the best]
+    /// What to draw with: a part of an adapter's name, or, for pictures, cpu: the processor [default: NEUROTESS_ADAPTER;
+    /// for pictures the processor, but for large scenes where there is graphics hardware]
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
     /// Most memory of the adapter that the tracings of large scenes may take, as in 512MiB or 2GB: what is near is

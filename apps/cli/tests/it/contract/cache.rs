@@ -131,7 +131,7 @@ fn of_a_circuit_that_cannot_be_written_to_the_user_has_the_cache() {
     assert_eq!(drawn.again().0, [all, 0]);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn small_circuits_leave_no_file() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 5 --morphologies 2 --points 100 --reported 1")

@@ -74,7 +74,7 @@ fn write_sections(work: &Work) {
     std::fs::write(work.path("c/edges.h5"), bytes).expect("written");
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn synapses_that_only_name_sections_are_shown_too() {
     let work = circuit();
     write_sections(&work);
@@ -100,7 +100,7 @@ fn synapses_that_only_name_sections_are_shown_too() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn shapes_are_points_spheres_and_contacts() {
     let work = circuit();
     let close = "--nodes 3 --synapses --marker-size 8 --size 320x240 --samples 1 --no-legend";
@@ -162,7 +162,7 @@ fn the_window_takes_the_same_options() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn what_cannot_be_shown_says_why() {
     let work = circuit();
     work.file("a.swc", SMALL);

@@ -115,7 +115,7 @@ fn pixels(png: &[u8]) -> Vec<u8> {
     pixels
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn what_is_no_mesh_says_why_and_leaves_no_picture() {
     let work = Work::new();
     work.file("a.swc", SMALL);

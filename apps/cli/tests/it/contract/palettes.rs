@@ -77,7 +77,7 @@ fn faults_of_palettes_have_a_line_and_a_remedy() {
     assert_eq!(work.names("."), ["bad.toml", "cell.swc"]);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn colors_that_look_alike_are_told_once() {
     let stats = |work: &Work| -> Value {
         let stats = fs::read_to_string(work.path("stats.json")).expect("stats");
@@ -100,7 +100,7 @@ fn colors_that_look_alike_are_told_once() {
     assert!(stats(&work)["colors"].is_null());
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn names_that_nothing_has_are_told() {
     let (_, run) = drawn("--set-color apical=f00 --set-color axon=00f");
     let told = "nothing in the picture is called 'apical': there are soma, axon, basal dendrite";
@@ -108,7 +108,7 @@ fn names_that_nothing_has_are_told() {
     assert!(!run.stderr().contains("'axon'"), "{}", run.stderr());
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn cells_of_a_circuit_have_own_colors() {
     let work = Work::new();
     work.run("synth circuit -o circuit --neurons 12 --morphologies 2 --seed 5")

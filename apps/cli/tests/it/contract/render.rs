@@ -68,7 +68,7 @@ fn picture(arguments: &str) -> Picture {
     Picture::read(&drawn(arguments).0, "cell.png")
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
     let picture = picture("");
     assert_eq!((picture.size, picture.channels), ((120, 90), 3));
@@ -80,7 +80,7 @@ fn a_cell_becomes_a_picture_in_the_colors_of_its_types() {
 }
 
 /// Cells are as thick as the factor says, in the same colors.
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn radii_are_drawn_larger_by_a_factor() {
     let [traced, thick] = ["1", "3"].map(|factor| {
         let look = "--color-by radius --no-legend --types axon --soma none --range 0,3";
@@ -174,7 +174,7 @@ fn modes_draw_the_same_and_memory_on_the_fly_does_not_grow() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn transparent_pictures_have_alpha() {
     let picture = picture("--transparent --no-legend");
     assert_eq!(picture.channels, 4);
@@ -182,7 +182,7 @@ fn transparent_pictures_have_alpha() {
     assert!(alphas.contains(&0) && alphas.contains(&255) && alphas.len() > 6);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn stats_have_the_keys_of_the_contract() {
     let (work, run) = drawn("--stats stats.json --json");
     let text = work.text("stats.json");
@@ -211,7 +211,7 @@ fn stats_have_the_keys_of_the_contract() {
     assert_eq!(json["triangles"], stats["triangles"]);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn turntables_are_numbered_and_turn() {
     let (work, _) = {
         let work = Work::new();
@@ -233,7 +233,7 @@ fn turntables_are_numbered_and_turn() {
     assert!(a != b);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn several_cells_are_in_one_picture_and_a_broken_one_is_reported() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -250,7 +250,7 @@ fn several_cells_are_in_one_picture_and_a_broken_one_is_reported() {
     assert_eq!(Picture::read(&work, "all.png").size, (90, 60));
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn nothing_to_draw_is_a_picture_of_nothing() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
@@ -295,7 +295,7 @@ fn files_stay_without_force_and_nothing_is_left_half_written() {
 /// Drivers are hidden by the variables of the loaders that Linux has.
 #[cfg(target_os = "linux")]
 #[neurotess_testing::test]
-fn without_an_adapter_it_says_what_to_install() {
+fn without_a_driver_the_processor_draws_and_a_named_adapter_says_what_to_install() {
     let work = Work::new();
     work.file("cell.swc", SMALL);
     let run = |arguments: &str| {
@@ -310,10 +310,17 @@ fn without_an_adapter_it_says_what_to_install() {
         }
         Run(command.output().expect("it runs"))
     };
-    let drawn = run("render cell.swc -o cell.png").exits(1);
-    assert_eq!(drawn.errors().len(), 1, "{}", drawn.stderr());
-    assert!(drawn.errors()[0].contains("install"), "{}", drawn.stderr());
-    assert_eq!(work.names("."), ["cell.swc"]);
+    for named in ["--adapter llvmpipe", "--lod exploration"] {
+        let drawn = run(&format!("render cell.swc -o cell.png {named}")).exits(1);
+        assert_eq!(drawn.errors().len(), 1, "{}", drawn.stderr());
+        assert!(drawn.errors()[0].contains("install"), "{}", drawn.stderr());
+        assert_eq!(work.names("."), ["cell.swc"]);
+    }
+    run("render cell.swc -o cell.png --stats stats.json").exits(0);
+    let stats: Value = serde_json::from_str(&work.text("stats.json")).expect("JSON");
+    assert_eq!(stats["adapter"], "cpu");
+    let explored = run("render cell.swc -o e.png --adapter cpu --lod exploration").exits(2);
+    assert!(explored.stderr().contains("--lod"), "{}", explored.stderr());
     let version = run("--version -v").exits(0).stdout();
     assert!(version.contains("adapter: none"), "{version}");
 }
@@ -486,7 +493,7 @@ fn tracings_that_do_not_fit_the_adapter_are_drawn_as_those_that_do() {
     );
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn thin_neurites_are_widened_unless_they_are_not_to_be() {
     let work = Work::new();
     let thin = "1 1 0 0 0 4 -1\n2 2 0 5 0 0.1 1\n3 2 0 60 0 0.1 2\n4 2 3 120 0 0.1 3\n";
@@ -504,7 +511,7 @@ fn thin_neurites_are_widened_unless_they_are_not_to_be() {
     assert!(3 * usual > 4 * off, "{usual} {off}");
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn axes_are_drawn_where_there_is_room() {
     // The green of y, which the cell has not.
     let green = |pixel: &[u8]| pixel[1] > pixel[0].max(pixel[2]).saturating_add(40);
@@ -523,7 +530,7 @@ fn axes_are_drawn_where_there_is_room() {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn the_library_draws_the_same_picture() {
     use neurotess::recipe::{DrawOptions, MeshOptions};
     let (work, _) = drawn("--scale-bar");

@@ -87,7 +87,7 @@ fn a_network_is_told_of_meshed_and_listed_like_a_circuit() {
     assert_eq!(work.names("out"), ["neurons_0.ply", "neurons_1.ply"]);
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn a_network_is_drawn_with_its_synapses() {
     let work = Work::new();
     network(&work);

@@ -173,7 +173,7 @@ fn options_of_reports_that_do_not_fit_are_wrong_usage() {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn reports_of_other_circuits_are_refused() {
     let work = Work::new();
     work.run(CIRCUIT).exits(0);

@@ -182,7 +182,7 @@ fn crowded(work: &Work) {
 }
 
 /// A legend that covers cells makes the camera give way, of each picture.
-#[neurotess_testing::test(needs(gpu))]
+#[neurotess_testing::test]
 fn pictures_that_are_reported_are_new_and_whole() {
     let work = work();
     crowded(&work);

@@ -1,7 +1,9 @@
 //! Pictures by the processor.
 
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 
+use neurotess::mesh::CoarseMesh;
 use neurotess::picture::color::ColorTable;
 use neurotess::picture::{AdaptiveSettings, Frame, PictureOptions, TemplateId, Viewpoint, Watch};
 use neurotess::raster::{
@@ -18,8 +20,12 @@ pub(super) struct Processor {
     markers: Option<SceneMarkers>,
     meshes: Vec<SceneMesh>,
     pub(super) watch: Watch,
-    /// Patches of all cells, and what the last picture took.
+    /// Patches of all cells.
     patches: u64,
+    /// Bytes of the cells' meshes by what they hold, and per tracing point.
+    bytes: BTreeMap<&'static str, u64>,
+    bytes_per_point: f64,
+    /// What the last picture took.
     last: raster::Cost,
 }
 
@@ -35,12 +41,22 @@ impl Processor {
             let in_each = options.samples_in_sub_pixel();
             SceneMarkers::new(&set.markers, settings(options.sub_pixels(in_each)))
         });
+        let meshes_of_cells = || shown.cells.iter().map(|cell| &cell.mesh);
+        let points: usize = meshes_of_cells().map(|mesh| mesh.tracing.len()).sum();
+        let sum = |of: fn(&CoarseMesh) -> usize| meshes_of_cells().map(of).sum::<usize>() as u64;
+        let bytes = BTreeMap::from([
+            ("tracing", sum(|mesh| size_of_val(&mesh.tracing[..]))),
+            ("vertices", sum(|mesh| size_of_val(&mesh.vertices[..]))),
+            ("patches", sum(|mesh| size_of_val(&mesh.patches[..]))),
+        ]);
         Ok(Self {
             settings: shown.settings()?,
             markers,
             meshes: meshes.for_processor(&colored.mesh_keys),
             watch: Watch::default(),
             patches: shown.patches(),
+            bytes_per_point: bytes.values().sum::<u64>() as f64 / points.max(1) as f64,
+            bytes,
             last: raster::Cost::default(),
         })
     }
@@ -113,6 +129,8 @@ impl Processor {
             vertices: self.last.vertices,
             triangles: self.last.triangles,
             levels: self.last.levels.clone(),
+            bytes: self.bytes.clone(),
+            bytes_per_point: self.bytes_per_point,
             markers,
             meshes: (count > 0).then(|| [count, triangles.sum()]),
             ..SourceStats::default()
