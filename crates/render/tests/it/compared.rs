@@ -19,11 +19,14 @@ pub(crate) struct Difference {
     pub(crate) share: f64,
     /// Differences of blurred channels, four a pixel.
     pub(crate) steps: Vec<f64>,
+    /// Whether all bytes are the same.
+    is_equal: bool,
 }
 
 impl Difference {
     pub(crate) fn between(a: &Image, b: &Image) -> Self {
         assert_eq!((a.width, a.height), (b.width, b.height));
+        let is_equal = a == b;
         let [a, b] = [a, b].map(blurred);
         let steps: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).collect();
         let far = |pixel: &&[f64]| pixel.iter().any(|&step| step > MUCH);
@@ -31,12 +34,23 @@ impl Difference {
             mean: steps.iter().sum::<f64>() / steps.len() as f64,
             share: 4.0 * steps.chunks(4).filter(far).count() as f64 / steps.len() as f64,
             steps,
+            is_equal,
         }
     }
 
     /// Whether an eye sees it.
     pub(crate) fn is_seen(&self) -> bool {
-        self.mean > MEAN || self.share > SHARE
+        self.exceeds(1.0)
+    }
+
+    /// Whether it is larger than this share of what an eye sees.
+    pub(crate) fn exceeds(&self, share: f64) -> bool {
+        self.mean > share * MEAN || self.share > share * SHARE
+    }
+
+    /// Whether there is any, to the byte.
+    pub(crate) fn is_any(&self) -> bool {
+        !self.is_equal
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pictures that must stay as they are, unless somebody looked at them.
+//! Pictures that must stay as they are, unless somebody looked at them: the processor's to the byte, an adapter's nearly.
 //!
 //! `NEUROTESS_GOLDEN=renew cargo test -p neurotess-render --test it golden::` (or `cargo xtask pictures
 //! --golden`) writes them anew. Where one fails, `before`, `after` and `difference` are written to
@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::adapter::{device, gpu};
 use crate::compared::{Difference, MEAN};
-use crate::pictured::{explored, mesh, picture, picture_of, spheres};
+use crate::pictured::{By, explored, mesh, spheres};
 use glam::DVec3;
 use neurotess_mesh::CoarseMesh;
 use neurotess_render::color::{ColorMap, fraction};
@@ -34,48 +34,32 @@ fn small() -> PictureOptions {
     }
 }
 
-#[neurotess_testing::test(needs(gpu))]
-fn a_whole_cell_in_the_colors_of_its_types() {
-    let gpu = device();
+/// Pictures of both, the processor's and an adapter's, by the names of their files.
+const BOTH: [(&str, fn(&By<'_>) -> Image); 4] = [
+    ("whole", whole),
+    ("near", near),
+    ("wireframe", wireframe),
+    ("scale", scale),
+];
+
+/// A whole cell in the colors of its types.
+fn whole(by: &By<'_>) -> Image {
     let cell = sample("pyramidal.swc");
     let fit = Camera::fit(Side::Front, 0.35, 150.0 / 200.0, 0.04, &spheres(&cell));
     let options = PictureOptions {
         size: [150, 200],
         ..small()
     };
-    let image = picture(&gpu, &cell, &fit.expect("fits"), &options);
-    compare("whole", &image);
+    by.picture(&cell, &fit.expect("fits"), &options)
 }
 
-#[neurotess_testing::test(needs(gpu))]
-fn a_soma_from_near() {
-    let gpu = device();
-    compare(
-        "near",
-        &picture(&gpu, &sample("pyramidal.swc"), &close(), &small()),
-    );
+/// A soma from near.
+fn near(by: &By<'_>) -> Image {
+    by.picture(&sample("pyramidal.swc"), &close(), &small())
 }
 
-#[neurotess_testing::test(needs(gpu))]
-fn neurons_within_a_budget() {
-    let gpu = device();
-    let (eye, target) = (DVec3::new(90.0, 60.0, 260.0), DVec3::new(30.0, 10.0, 0.0));
-    let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("a camera");
-    // A third of what half a pixel everywhere takes.
-    let image = explored(
-        &gpu,
-        &sample("pyramidal.swc"),
-        12,
-        16_000,
-        &camera,
-        &small(),
-    );
-    compare("explored", &image);
-}
-
-#[neurotess_testing::test(needs(gpu))]
-fn a_wireframe_on_black() {
-    let gpu = device();
+/// A wireframe on black.
+fn wireframe(by: &By<'_>) -> Image {
     let options = PictureOptions {
         background: Some([0; 3]),
         look: Look {
@@ -88,15 +72,11 @@ fn a_wireframe_on_black() {
     };
     let (eye, target) = (DVec3::new(9.0, 6.0, 40.0), DVec3::ZERO);
     let camera = Camera::new(eye, target, DVec3::Y, 0.4).expect("a camera");
-    compare(
-        "wireframe",
-        &picture(&gpu, &sample("granule.swc"), &camera, &options),
-    );
+    by.picture(&sample("granule.swc"), &camera, &options)
 }
 
-#[neurotess_testing::test(needs(gpu))]
-fn a_scale_with_its_legend_on_nothing() {
-    let gpu = device();
+/// A scale with its legend, on nothing.
+fn scale(by: &By<'_>) -> Image {
     let cell = sample("star.swc");
     let reach = cell
         .tracing
@@ -114,7 +94,7 @@ fn a_scale_with_its_legend_on_nothing() {
         background: None,
         ..small()
     };
-    let mut image = picture_of(&gpu, &cell, &color_keys, &scale, &camera, &options);
+    let mut image = by.picture_of(&cell, &color_keys, &scale, &camera, &options);
     let overlay = Overlay::new(
         &OverlayOptions {
             legend: Some(Legend::bar("distance", "µm", scale, [0.0, reach], false)),
@@ -127,11 +107,60 @@ fn a_scale_with_its_legend_on_nothing() {
         &spheres(&cell),
     );
     overlay.lay_on(0, &mut image);
-    compare("scale", &image);
+    image
 }
 
+#[neurotess_testing::test]
+fn the_processor_draws_the_same_bytes_as_ever() {
+    for (name, draw) in BOTH {
+        compare(name, &draw(&By::Processor), &Difference::is_any);
+    }
+}
+
+/// With any number of threads, too.
+#[neurotess_testing::test]
+fn the_bytes_do_not_depend_on_threads() {
+    let drawn = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads")
+            .install(|| BOTH.map(|(_, draw)| draw(&By::Processor)))
+    };
+    assert!(drawn(1) == drawn(3));
+}
+
+/// Within a tenth of what an eye sees; lines of a wireframe within a third, since adapters know how wide a pixel is on the
+/// grid of a patch for blocks of two by two pixels only.
+#[neurotess_testing::test(needs(gpu))]
+fn adapters_draw_what_the_processor_draws() {
+    let gpu = device();
+    for (name, draw) in BOTH {
+        let tenths = if name == "wireframe" { 3.0 } else { 1.0 };
+        compare(name, &draw(&By::Adapter(&gpu)), &move |difference| {
+            difference.exceeds(tenths / 10.0)
+        });
+    }
+}
+
+#[neurotess_testing::test(needs(gpu))]
+fn neurons_within_a_budget() {
+    let gpu = device();
+    let (eye, target) = (DVec3::new(90.0, 60.0, 260.0), DVec3::new(30.0, 10.0, 0.0));
+    let camera = Camera::new(eye, target, DVec3::Y, 0.5).expect("a camera");
+    // A third of what half a pixel everywhere takes.
+    let image = explored(
+        &gpu,
+        &sample("pyramidal.swc"),
+        12,
+        16_000,
+        &camera,
+        &small(),
+    );
+    compare("explored", &image, &Difference::is_seen);
+}
+
+/// `differs`: whether a difference to the picture that is kept is too large.
 #[expect(clippy::print_stdout, reason = "whoever renews pictures looks at them")]
-fn compare(name: &str, image: &Image) {
+fn compare(name: &str, image: &Image, differs: &dyn Fn(&Difference) -> bool) {
     let kept = workspace().join(format!("crates/render/tests/golden/{name}.png"));
     if std::env::var("NEUROTESS_GOLDEN").is_ok_and(|value| value == "renew") {
         write(&kept, image);
@@ -140,7 +169,7 @@ fn compare(name: &str, image: &Image) {
     }
     let before = read(&kept);
     let difference = Difference::between(&before, image);
-    if difference.is_seen() {
+    if differs(&difference) {
         let folder = workspace().join("target/golden");
         fs::create_dir_all(&folder).expect("a folder");
         let shown = Image {

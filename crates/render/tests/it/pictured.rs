@@ -5,12 +5,13 @@ use glam::{DQuat, DVec3};
 use neurotess_formats::{ReadOptions, swc};
 use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::CoarseMesh;
+use neurotess_raster::Scene;
 use neurotess_refine::{LodCriterion, RefineOptions};
 use neurotess_render::color::{ColorTable, Palette, Rgb, category};
 use neurotess_render::{
-    BoundingSphere, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance, PictureOptions,
-    Placement, Prerefined, PrerefinedSurface, Proxy, Side, Template, TemplateId, Templates,
-    VertexSource, Viewpoint, render_still,
+    AdaptiveSettings, BoundingSphere, Camera, DEFAULT_FOV, Exploration, Gpu, Image, Instance,
+    PictureOptions, Placement, Prerefined, PrerefinedSurface, Proxy, Side, Template, TemplateId,
+    Templates, VertexSource, Viewpoint, Watch, render_still,
 };
 
 /// A soma, an axon, and a dendrite that forks.
@@ -78,6 +79,89 @@ pub(crate) fn by_type(mesh: &CoarseMesh) -> (Vec<u32>, ColorTable) {
     (color_keys.collect(), table)
 }
 
+/// Who draws.
+pub(crate) enum By<'g> {
+    Processor,
+    Adapter(&'g Gpu),
+}
+
+impl By<'_> {
+    /// The whole picture of a mesh at level 4, in the colors of its types.
+    pub(crate) fn picture(
+        &self,
+        mesh: &CoarseMesh,
+        camera: &Camera,
+        options: &PictureOptions,
+    ) -> Image {
+        let (color_keys, table) = by_type(mesh);
+        self.draw(mesh, &color_keys, &table, camera, options)
+    }
+
+    /// The same on a scale.
+    pub(crate) fn picture_of(
+        &self,
+        mesh: &CoarseMesh,
+        color_keys: &[u32],
+        scale: &[Rgb],
+        camera: &Camera,
+        options: &PictureOptions,
+    ) -> Image {
+        let table = ColorTable {
+            scale: scale.to_vec(),
+            categories: Vec::new(),
+            ..ColorTable::default()
+        };
+        self.draw(mesh, color_keys, &table, camera, options)
+    }
+
+    fn draw(
+        &self,
+        mesh: &CoarseMesh,
+        color_keys: &[u32],
+        table: &ColorTable,
+        camera: &Camera,
+        options: &PictureOptions,
+    ) -> Image {
+        match self {
+            Self::Processor => rastered(mesh, color_keys, table, camera, options),
+            Self::Adapter(gpu) => draw(gpu, mesh, color_keys, table, camera, options),
+        }
+    }
+}
+
+fn rastered(
+    mesh: &CoarseMesh,
+    color_keys: &[u32],
+    table: &ColorTable,
+    camera: &Camera,
+    options: &PictureOptions,
+) -> Image {
+    let template = Template {
+        mesh,
+        color_keys,
+        values: &[],
+    };
+    let settings = AdaptiveSettings {
+        lod: LodCriterion::Homogeneous(4),
+        ..AdaptiveSettings::default()
+    };
+    let instances = vec![Instance::new(TemplateId(0))];
+    let scene = Scene::new(vec![template], instances, settings).expect("a scene");
+    let view = Viewpoint {
+        camera: *camera,
+        near: camera.near(&spheres(mesh)),
+    };
+    let mut whole = Image::new(options.size[0], 0);
+    let take = |_: u32, band: Image| {
+        whole.height += band.height;
+        whole.pixels.extend(band.pixels);
+        Ok::<(), std::convert::Infallible>(())
+    };
+    let drawn = neurotess_raster::draw(&scene, &view, table, options, &Watch::default(), take);
+    drawn.expect("drawn");
+    whole
+}
+
 /// The whole picture of a mesh at level 4, in the colors of its types.
 pub(crate) fn picture(
     gpu: &Gpu,
@@ -85,25 +169,7 @@ pub(crate) fn picture(
     camera: &Camera,
     options: &PictureOptions,
 ) -> Image {
-    let (color_keys, table) = by_type(mesh);
-    draw(gpu, mesh, &color_keys, &table, camera, options)
-}
-
-/// The same on a scale.
-pub(crate) fn picture_of(
-    gpu: &Gpu,
-    mesh: &CoarseMesh,
-    color_keys: &[u32],
-    scale: &[Rgb],
-    camera: &Camera,
-    options: &PictureOptions,
-) -> Image {
-    let table = ColorTable {
-        scale: scale.to_vec(),
-        categories: Vec::new(),
-        ..ColorTable::default()
-    };
-    draw(gpu, mesh, color_keys, &table, camera, options)
+    By::Adapter(gpu).picture(mesh, camera, options)
 }
 
 /// A row of cells, each behind the other, within a budget of triangles.
