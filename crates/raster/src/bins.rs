@@ -70,10 +70,13 @@ pub(crate) struct Piece {
     bins: Vec<(u32, u32)>,
 }
 
+/// Set in the index of a vertex that clipping made, until all others are there.
+const CLIPPED: u32 = 1 << 31;
+
 /// Triangles of a surface that a task makes.
 #[derive(Default)]
 pub(crate) struct Bins {
-    /// Indices of vertices; those beyond the surface's are in `clipped`. Their places run around them clockwise on the grid,
+    /// Their places run around them clockwise on the grid,
     /// whose y runs down.
     pub(crate) triangles: Vec<Triangle>,
     clipped: Vec<Vertex>,
@@ -130,9 +133,9 @@ impl Bins {
                 let polygon = self.clip(projection, vertices, corners);
                 for k in 2..polygon.len() {
                     let fan = [polygon[0], polygon[k - 1], polygon[k]];
-                    let places = fan.map(|corner| match vertices.vertices.get(corner as usize) {
-                        Some(vertex) => vertex.place,
-                        None => self.clipped[corner as usize - vertices.vertices.len()].place,
+                    let places = fan.map(|corner| match corner & CLIPPED {
+                        0 => vertices.vertices[corner as usize].place,
+                        _ => self.clipped[(corner & !CLIPPED) as usize].place,
                     });
                     let triangle = Triangle {
                         corners: fan,
@@ -221,7 +224,7 @@ impl Bins {
                 continue;
             };
             let mix = |a: f32, b: f32| a + (b - a) * share;
-            polygon.push((vertices.vertices.len() + self.clipped.len()) as u32);
+            polygon.push(CLIPPED | self.clipped.len() as u32);
             self.clipped.push(Vertex {
                 place,
                 coverage: mix(a.coverage, b.coverage),
@@ -251,10 +254,19 @@ impl Bins {
             *place += 1;
         }
         let mut vertices = vertices.vertices;
+        let mut triangles = self.triangles;
+        let first = vertices.len() as u32;
+        if !self.clipped.is_empty() {
+            for corner in triangles.iter_mut().flat_map(|t| &mut t.corners) {
+                if *corner & CLIPPED != 0 {
+                    *corner = first + (*corner & !CLIPPED);
+                }
+            }
+        }
         vertices.extend(self.clipped);
         Piece {
             vertices,
-            triangles: self.triangles,
+            triangles,
             bins,
         }
     }

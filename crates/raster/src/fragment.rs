@@ -11,7 +11,7 @@ use crate::sample::Surface;
 
 /// What the triangles of a surface have in common.
 pub(crate) struct Paint<'a> {
-    /// Linear colors of what vertices have their colors of, and in the last place 1 for colors of the scale.
+    /// Linear colors of what vertices have their colors of, and how much of an edge each has.
     pub(crate) colors: Cow<'a, [[f32; 4]]>,
     /// Their color keys, and the instance.
     pub(crate) keys: Cow<'a, [u32]>,
@@ -93,10 +93,10 @@ impl Fragment<'_> {
     }
 
     pub(crate) fn surface(&self) -> Surface {
-        let [r, g, b, scale] = self.color();
+        let [r, g, b, edge] = self.color();
         let thin = self.thin();
-        let color = lined([r, g, b], self.line * (1.0 - thin));
-        let surface = Surface::new(self.normal(), color, thin, scale > 0.5);
+        let [r, g, b] = lined([r, g, b], self.line * (1.0 - thin));
+        let surface = Surface::new(self.normal(), [r, g, b, edge], thin);
         match &self.paint.sheet {
             Some(sheet) if sheet.is_translucent() => surface.translucent(),
             _ => surface,
@@ -116,7 +116,7 @@ fn lined(color: [f32; 3], share: f32) -> [f32; 3] {
     [0, 1, 2].map(|k| color[k] + (line[k] - color[k]) * share)
 }
 
-pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+fn luminance([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use glam::Vec3;
 use neurotess_mesh::{Role, SurfaceVertex, TracingPoint};
 use neurotess_picture::color::ColorTable;
+use neurotess_picture::recolor::Contrast;
 use neurotess_picture::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
-use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint};
+use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint, VisibleKey};
 use neurotess_refine::{PatchBlock, PointNumbers, RefineOptions, Refinement};
 use rayon::prelude::*;
 
@@ -59,16 +60,15 @@ impl Painting<'_> {
 pub(crate) struct Colors<'a> {
     table: &'a ColorTable,
     linear: Vec<[f32; 4]>,
-    highlighted: [f32; 4],
+    contrast: Contrast,
 }
 
 impl<'a> Colors<'a> {
     pub(crate) fn new(table: &'a ColorTable, look: &Look) -> Self {
-        let [r, g, b] = neurotess_picture::color::linear(look.highlighted.0);
         Self {
             table,
             linear: table.linear(),
-            highlighted: [r, g, b, look.highlighted.1],
+            contrast: Contrast::new(look),
         }
     }
 
@@ -77,19 +77,17 @@ impl<'a> Colors<'a> {
         self.table.values.instances() > 0
     }
 
-    /// Of these keys of an instance in a state; in the last place 1 for colors of the scale.
+    /// Of these keys of an instance in a state, each with how much of an edge it has.
     pub(crate) fn of_keys(&self, keys: &[u32], instance: u32, state: u32) -> Vec<[f32; 4]> {
-        let color = |&key: &u32| {
-            let (color, of_scale) = self.table.color(&self.linear, key, instance, None);
-            let [r, g, b] = match state & HIGHLIGHTED {
-                0 => color,
-                _ => {
-                    let [x, y, z, share] = self.highlighted;
-                    let to = [x, y, z];
-                    [0, 1, 2].map(|k| color[k] + (to[k] - color[k]) * share)
-                }
+        let color = |&color_key: &u32| {
+            let key = VisibleKey {
+                instance,
+                color_key,
             };
-            [r, g, b, if of_scale { 1.0 } else { 0.0 }]
+            let color = self
+                .contrast
+                .key_color(self.table, &self.linear, &key, None);
+            self.contrast.in_state(color, state)
         };
         keys.iter().map(color).collect()
     }

@@ -3,7 +3,6 @@
 use glam::Vec3;
 use neurotess_picture::{KEY, Light, Look, edge_color};
 
-use crate::fragment::luminance;
 use crate::sample::Surface;
 
 /// The lights of a picture.
@@ -12,7 +11,7 @@ pub(crate) struct Lights {
     /// Unit directions to the lights in the view; none: plain colors.
     key: Option<Vec3>,
     fill: Vec3,
-    /// Color of edges, and luminance of the background.
+    /// Color of edges.
     edge: [f32; 4],
 }
 
@@ -85,19 +84,10 @@ impl Lights {
     pub(crate) fn colored(&self, surface: Surface, lit: &Lit) -> [f32; 3] {
         let color = surface.color();
         let bare = color.map(|c| c * lit.factor + lit.white);
-        if !surface.is_of_scale() || lit.edge == 0.0 {
+        let share = lit.edge * surface.edge();
+        if share == 0.0 {
             return bare;
         }
-        let share = lit.edge * lack_of_contrast(color, self.edge[3]);
         [0, 1, 2].map(|k| bare[k] + share * (self.edge[k] - bare[k]))
     }
-}
-
-/// How close a color is to a background of this luminance: see shade.wgsl.
-fn lack_of_contrast(color: [f32; 3], background: f32) -> f32 {
-    let own = luminance(color) + 0.05;
-    let other = background + 0.05;
-    let contrast = own.max(other) / own.min(other);
-    let t = ((contrast - 1.25) / (1.8 - 1.25)).clamp(0.0, 1.0);
-    1.0 - t * t * (3.0 - 2.0 * t)
 }

@@ -199,10 +199,7 @@ pub fn draw<E>(
             watch,
             counts: &counts,
         };
-        let image = match setup.many_samples {
-            true => painter.image::<4>(&band, &mut cost),
-            false => painter.image::<1>(&band, &mut cost),
-        };
+        let image = painter.drawn(&band, &mut cost);
         let image = image.ok_or(PictureError::Stopped)?;
         watch.note_tile();
         cost.bands += 1;
@@ -351,6 +348,14 @@ impl Painter<'_> {
             Some(made)
         };
         tiles.par_iter().enumerate().map(lit).collect()
+    }
+
+    /// The pixels of a band; none if it was stopped. Not generic, so that it is compiled here, as this crate is.
+    fn drawn(&self, band: &Band, cost: &mut Cost) -> Option<Image> {
+        match self.setup.many_samples {
+            true => self.image::<4>(band, cost),
+            false => self.image::<1>(band, cost),
+        }
     }
 
     /// The pixels of a band; none if it was stopped.

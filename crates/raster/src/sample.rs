@@ -12,20 +12,28 @@ pub(crate) trait Held: Copy + Default + Send + Sync {
     fn surface(&self) -> Surface;
 }
 
-/// A surface at a sample: normal in 32 bits, color in 24, how thin its tube is in six, and two flags.
+/// A surface at a sample: normal in 26 bits, color in 24, how much of an edge its color has in seven, how thin its tube is in
+/// six, and whether it is translucent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Surface(u64);
 
-/// Whether the color is one of the scale.
-const OF_SCALE: u64 = 1 << 62;
-/// Whether it is translucent.
+/// Bits of each of a normal's two octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010): accurate
+/// to 0.02°.
+const PLACE: u32 = 13;
+/// Largest of such a coordinate.
+const MOST: f32 = ((1 << (PLACE - 1)) - 1) as f32;
+/// First bits of what follows the normal.
+const COLOR: u32 = 2 * PLACE;
+const EDGE: u32 = COLOR + 24;
+const THIN: u32 = EDGE + 7;
 const TRANSLUCENT: u64 = 1 << 63;
-/// Steps of how thin a tube is.
-const THIN: f32 = 63.0;
+/// Steps of edges and of thinness.
+const EDGES: f32 = 127.0;
+const THINS: f32 = 63.0;
 
 impl Surface {
-    /// `normal`: in the view, of any length; `color`: linear.
-    pub(crate) fn new(normal: Vec3, color: [f32; 3], thin: f32, of_scale: bool) -> Self {
+    /// `normal`: in the view, of any length; `color`: linear, and how much of an edge it has.
+    pub(crate) fn new(normal: Vec3, [red, green, blue, edge]: [f32; 4], thin: f32) -> Self {
         let sum = normal.x.abs() + normal.y.abs() + normal.z.abs();
         let inverse = if sum > 0.0 { 1.0 / sum } else { 0.0 };
         let (mut x, mut y) = (normal.x * inverse, normal.y * inverse);
@@ -33,13 +41,18 @@ impl Surface {
             let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
             (x, y) = ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y));
         }
-        let place = |v: f32| u64::from(((v * 32767.0) as i16) as u16);
+        let place = |v: f32| ((v + 1.0) * MOST + 0.5) as u64;
         // Square roots: steps that an eye sees as nearly even.
         let byte = |v: f32| (v.max(0.0).sqrt() * 255.0 + 0.5) as u64 & 255;
-        let [red, green, blue] = color.map(byte);
-        let thin = (thin.clamp(0.0, 1.0) * THIN + 0.5) as u64;
-        let scale = if of_scale { OF_SCALE } else { 0 };
-        Self(place(x) | place(y) << 16 | red << 32 | green << 40 | blue << 48 | thin << 56 | scale)
+        let step = |v: f32, steps: f32| (v.clamp(0.0, 1.0) * steps + 0.5) as u64;
+        let color = byte(red) | byte(green) << 8 | byte(blue) << 16;
+        Self(
+            place(x)
+                | place(y) << PLACE
+                | color << COLOR
+                | step(edge, EDGES) << EDGE
+                | step(thin, THINS) << THIN,
+        )
     }
 
     /// The same as something that lets through what is behind.
@@ -51,14 +64,14 @@ impl Surface {
         self.0 & TRANSLUCENT != 0
     }
 
-    pub(crate) fn is_of_scale(self) -> bool {
-        self.0 & OF_SCALE != 0
+    fn bits(self, first: u32, count: u32) -> f32 {
+        (self.0 >> first & ((1 << count) - 1)) as f32
     }
 
     /// Unit normal in the view.
     pub(crate) fn normal(self) -> Vec3 {
-        let place = |bits: u64| f32::from((bits & 0xffff) as u16 as i16) / 32767.0;
-        let (x, y) = (place(self.0), place(self.0 >> 16));
+        let place = |first: u32| self.bits(first, PLACE) / MOST - 1.0;
+        let (x, y) = (place(0), place(PLACE));
         let z = 1.0 - x.abs() - y.abs();
         let fold = (-z).max(0.0);
         let folded = |v: f32| if v >= 0.0 { v - fold } else { v + fold };
@@ -67,15 +80,20 @@ impl Surface {
 
     /// Linear color.
     pub(crate) fn color(self) -> [f32; 3] {
-        [32, 40, 48].map(|shift| {
-            let root = (self.0 >> shift & 255) as f32 / 255.0;
+        [0, 8, 16].map(|shift| {
+            let root = self.bits(COLOR + shift, 8) / 255.0;
             root * root
         })
     }
 
+    /// How much of an edge its color has: 1 where it is about as light as the background.
+    pub(crate) fn edge(self) -> f32 {
+        self.bits(EDGE, 7) / EDGES
+    }
+
     /// From 0 for tubes at least two pixels wide to 1 for width 0.
     pub(crate) fn thin(self) -> f32 {
-        (self.0 >> 56 & 63) as f32 / THIN
+        self.bits(THIN, 6) / THINS
     }
 }
 
@@ -100,13 +118,14 @@ mod tests {
             let normal =
                 Vec3::new((t * 1.3).sin(), (t * 0.7).cos(), (t * 0.31).sin()).normalize_or(Vec3::Y);
             let color = [0.2, (t / 500.0).min(1.0), 1.0];
-            let held = Surface::new(normal * 20_000.0, color, t / 500.0, i % 2 == 0);
-            assert!(held.normal().distance(normal) < 2e-4, "{normal}");
+            let [r, g, b] = color;
+            let held = Surface::new(normal * 20_000.0, [r, g, b, t / 500.0], t / 500.0);
+            assert!(held.normal().distance(normal) < 4e-4, "{normal}");
             for (a, b) in held.color().into_iter().zip(color) {
                 assert!((a.sqrt() - b.sqrt()).abs() < 0.5 / 254.0, "{a} {b}");
             }
             assert!((held.thin() - t / 500.0).abs() < 0.01);
-            assert_eq!(held.is_of_scale(), i % 2 == 0);
+            assert!((held.edge() - t / 500.0).abs() < 0.005);
             assert!(!held.is_translucent() && held.translucent().is_translucent());
         }
     }

@@ -128,15 +128,13 @@ fn the_bytes_do_not_depend_on_threads() {
     assert!(drawn(1) == drawn(3));
 }
 
-/// Within a tenth of what an eye sees; lines of a wireframe within a third, since adapters know how wide a pixel is on the
-/// grid of a patch for blocks of two by two pixels only.
+/// Within a tenth of what an eye sees.
 #[neurotess_testing::test(needs(gpu))]
 fn adapters_draw_what_the_processor_draws() {
     let gpu = device();
     for (name, draw) in BOTH {
-        let tenths = if name == "wireframe" { 3.0 } else { 1.0 };
-        compare(name, &draw(&By::Adapter(&gpu)), &move |difference| {
-            difference.exceeds(tenths / 10.0)
+        compare(name, &draw(&By::Adapter(&gpu)), &|difference| {
+            difference.exceeds(0.1)
         });
     }
 }

@@ -18,6 +18,7 @@ mod picking;
 mod pictured;
 mod pictures;
 mod popping;
+mod processor;
 mod progressive;
 mod renderer;
 mod static_picture;
