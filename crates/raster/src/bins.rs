@@ -66,8 +66,10 @@ impl Vertices {
 pub(crate) struct Piece {
     vertices: Vec<Vertex>,
     triangles: Vec<Triangle>,
-    /// Tile and triangle, by tile.
-    bins: Vec<(u32, u32)>,
+    /// Triangles of all tiles, one tile after the other.
+    in_tiles: Vec<u32>,
+    /// By tile: where its triangles begin, and where the last one's end.
+    starts: Vec<u32>,
 }
 
 /// Set in the index of a vertex that clipping made, until all others are there.
@@ -76,17 +78,17 @@ const CLIPPED: u32 = 1 << 31;
 /// Triangles of a surface that a task makes.
 #[derive(Default)]
 pub(crate) struct Bins {
-    /// Their places run around them clockwise on the grid,
-    /// whose y runs down.
-    pub(crate) triangles: Vec<Triangle>,
+    /// Their corners run around them clockwise on the grid, whose y runs down.
+    triangles: Vec<Triangle>,
     clipped: Vec<Vertex>,
-    /// Tile and triangle, by tile.
+    /// Tile and triangle.
     bins: Vec<(u32, u32)>,
 }
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
+    /// Indices of vertices.
     pub(crate) corners: [u32; 3],
     /// Whether one looks at its front.
     pub(crate) is_front: bool,
@@ -103,13 +105,10 @@ impl Piece {
     }
 
     /// The triangles of a tile.
-    pub(crate) fn of_tile(&self, tile: u32) -> impl Iterator<Item = &Triangle> {
-        let first = self.bins.partition_point(|bin| bin.0 < tile);
-        let rest = &self.bins[first..];
-        let own = rest.partition_point(|bin| bin.0 == tile);
-        rest[..own]
-            .iter()
-            .map(|&(_, triangle)| &self.triangles[triangle as usize])
+    pub(crate) fn of_tile(&self, tile: usize) -> impl Iterator<Item = &Triangle> {
+        let [first, end] = [tile, tile + 1].map(|at| self.starts[at] as usize);
+        let triangles = self.in_tiles[first..end].iter();
+        triangles.map(|&triangle| &self.triangles[triangle as usize])
     }
 }
 
@@ -241,18 +240,21 @@ impl Bins {
     /// With its vertices, and triangles by tile; within one in the order in which they came.
     pub(crate) fn finished(self, vertices: Vertices, tiles: usize) -> Piece {
         let mut starts = vec![0_u32; tiles + 1];
-        for bin in &self.bins {
-            starts[bin.0 as usize + 1] += 1;
+        for &(tile, _) in &self.bins {
+            starts[tile as usize + 1] += 1;
         }
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
+        for tile in 0..tiles {
+            starts[tile + 1] += starts[tile];
         }
-        let mut bins = vec![(0, 0); self.bins.len()];
-        for bin in &self.bins {
-            let place = &mut starts[bin.0 as usize];
-            bins[*place as usize] = *bin;
+        let mut in_tiles = vec![0; self.bins.len()];
+        // What begins a tile moves to its end, where the next begins.
+        for &(tile, triangle) in &self.bins {
+            let place = &mut starts[tile as usize];
+            in_tiles[*place as usize] = triangle;
             *place += 1;
         }
+        starts.rotate_right(1);
+        starts[0] = 0;
         let mut vertices = vertices.vertices;
         let mut triangles = self.triangles;
         let first = vertices.len() as u32;
@@ -267,7 +269,8 @@ impl Bins {
         Piece {
             vertices,
             triangles,
-            bins,
+            in_tiles,
+            starts,
         }
     }
 }

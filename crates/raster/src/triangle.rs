@@ -63,7 +63,7 @@ pub(crate) fn rasterize<H: Held, const S: usize>(
         let corner = grid.corner(index);
         for surface in surfaces {
             for piece in &surface.pieces {
-                for triangle in piece.of_tile(index as u32) {
+                for triangle in piece.of_tile(index) {
                     let tile = slot.get_or_insert_with(Tile::new);
                     let corners = piece.corners(triangle);
                     Rasterizer {

@@ -34,8 +34,11 @@ fn small() -> PictureOptions {
     }
 }
 
+/// Draws a picture.
+type Draw = fn(&By<'_>) -> Image;
+
 /// Pictures of both, the processor's and an adapter's, by the names of their files.
-const BOTH: [(&str, fn(&By<'_>) -> Image); 4] = [
+const BOTH: [(&str, Draw); 4] = [
     ("whole", whole),
     ("near", near),
     ("wireframe", wireframe),
