@@ -28,17 +28,19 @@ def circuit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def can_draw() -> bool:
-    """Skips what draws where there is no adapter; with NEUROTESS_REQUIRE_GPU=1 that is a failure."""
+def has_adapter() -> str:
+    """A name that any adapter has. Skips what needs one where there is none; with NEUROTESS_REQUIRE_GPU=1 that is a
+    failure."""
     import neurotess as nt
 
+    named = os.environ.get("NEUROTESS_ADAPTER", "")
     try:
-        nt.render(nt.synth("granule", points=50), size=(16, 16), legend=False)
+        nt.render(nt.synth("granule", points=50), size=(16, 16), legend=False, adapter=named)
     except nt.RenderError as error:
         if os.environ.get("NEUROTESS_REQUIRE_GPU") == "1":
             raise
         pytest.skip(f"no graphics adapter ({error})")
-    return True
+    return named
 
 
 def pytest_configure(config: pytest.Config) -> None:

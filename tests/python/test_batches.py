@@ -127,9 +127,7 @@ POINTS = {"render": 3000, "mesh": 2_000_000}
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
 @pytest.mark.parametrize("work", LONG_WORK)
-def test_interrupts_stop_the_work(work: str, request: pytest.FixtureRequest) -> None:
-    if work == "render":
-        request.getfixturevalue("can_draw")
+def test_interrupts_stop_the_work(work: str) -> None:
     code = f"""
         import os, signal, time, neurotess as nt
         # Where the tests run in the background, it is ignored.

@@ -102,7 +102,6 @@ def written(file: Path) -> str:
     return file.read_text()
 
 
-@pytest.mark.usefixtures("can_draw")
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
 def test_a_mouse_turns_and_picks(lab: Callable[..., str], tmp_path: Path) -> None:
     pytest.importorskip("jupyter_rfb")

@@ -64,7 +64,7 @@ def test_ids_of_several_populations_are_told_apart(two: nt.Circuit) -> None:
         two.select(frame[["x", "y"]])
 
 
-def test_meshes_and_pictures_are_of_the_population_that_is_meant(two: nt.Circuit, can_draw: bool) -> None:
+def test_meshes_and_pictures_are_of_the_population_that_is_meant(two: nt.Circuit) -> None:
     first, second = two.populations
     made = list(two.mesh([(second, 4), (first, 4)], level=1))
     assert [(one.population, one.node_id) for one in made] == [(first, 4), (second, 4)]
@@ -242,7 +242,7 @@ def test_circuits_are_pickled(circuit: nt.Circuit) -> None:
 
 
 def test_synapses_are_a_table_and_drawn(
-    circuit: nt.Circuit, can_draw: bool, tmp_path: Path
+    circuit: nt.Circuit, tmp_path: Path
 ) -> None:
     [edges] = circuit.edges.name
     synapses = circuit.synapses(edges, numbers=["delay"])

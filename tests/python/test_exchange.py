@@ -179,7 +179,7 @@ def test_names_come_and_go_with_neurom_and_morphio(samples: Path) -> None:
 
 
 @pytest.mark.full
-def test_cells_of_other_packages_are_taken_as_they_are(cell: nt.Morphology, can_draw: bool) -> None:
+def test_cells_of_other_packages_are_taken_as_they_are(cell: nt.Morphology) -> None:
     navis = pytest.importorskip("navis")
     pytest.importorskip("neurom")
     ours = nt.mesh(cell, level=1)

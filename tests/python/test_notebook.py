@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 
-@pytest.mark.usefixtures("can_draw")
 @pytest.mark.full
 def test_a_notebook_shows_pictures_and_views() -> None:
     nbclient = pytest.importorskip("nbclient")

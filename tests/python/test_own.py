@@ -92,7 +92,6 @@ class Elsewhere:
         self.vertex_attributes = attributes
 
 
-@pytest.mark.usefixtures("can_draw")
 def test_meshes_are_colored_by_numbers_of_their_vertices(mesh: nt.Mesh) -> None:
     height = mesh.vertices[:, 1]
     options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat"}
@@ -107,7 +106,6 @@ def test_meshes_are_colored_by_numbers_of_their_vertices(mesh: nt.Mesh) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_numbers_of_meshes_come_by_name_and_from_other_packages(mesh: nt.Mesh) -> None:
     height = mesh.vertices[:, 1]
     options = {**SMALL, "colormap": BLUE_TO_RED, "legend": False, "light": "flat"}
@@ -124,7 +122,6 @@ def test_numbers_of_meshes_come_by_name_and_from_other_packages(mesh: nt.Mesh) -
     assert (low[..., 0] - low[..., 2]).max() <= 0 < (low[..., 2] - low[..., 0]).max()
 
 
-@pytest.mark.usefixtures("can_draw")
 def test_vertices_at_one_place_keep_their_own_numbers() -> None:
     # Two triangles that share a side, each with its corners for itself.
     corners = np.array([[0, 0, 0], [10, 0, 0], [0, 10, 0], [10, 10, 0], [0, 10, 0], [10, 0, 0]], float)
@@ -139,7 +136,6 @@ def test_vertices_at_one_place_keep_their_own_numbers() -> None:
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_the_legend_tells_numbers_of_meshes(mesh: nt.Mesh) -> None:
     height = mesh.vertices[:, 1]
     big = {"size": (400, 300), "samples": 4}
@@ -153,7 +149,6 @@ def test_the_legend_tells_numbers_of_meshes(mesh: nt.Mesh) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_cells_and_meshes_have_one_scale(mesh: nt.Mesh) -> None:
     cell = mesh.cell
     assert cell is not None

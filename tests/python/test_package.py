@@ -70,7 +70,7 @@ def test_examples_of_the_documentation_hold(module: str) -> None:
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
-def test_examples_run(example: Path, tmp_path: Path, can_draw: bool) -> None:
+def test_examples_run(example: Path, tmp_path: Path) -> None:
     for package in ("matplotlib", "pandas"):
         pytest.importorskip(package)
     command = [sys.executable, str(example), str(tmp_path)]
@@ -99,7 +99,7 @@ def test_the_reference_is_made_without_a_warning(tmp_path: Path) -> None:
 
 @pytest.mark.full
 def test_the_page_runs_as_printed(
-    tmp_path: Path, can_draw: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for package in ("trimesh", "pyvista", "navis", "pandas", "matplotlib", "jupyter_rfb"):
         pytest.importorskip(package)

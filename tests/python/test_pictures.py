@@ -1,4 +1,4 @@
-"""Pictures; they need an adapter."""
+"""Pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import neurotess as nt
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.usefixtures("can_draw")
 
 SMALL = {"size": (96, 64), "samples": 4}
 

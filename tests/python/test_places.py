@@ -234,7 +234,6 @@ def test_numbers_too_large_for_a_float_are_exact() -> None:
 SMALL = {"size": (96, 64), "samples": 1, "legend": False}
 
 
-@pytest.mark.usefixtures("can_draw")
 def test_values_color_points_samples_and_sections(cell: nt.Morphology) -> None:
     def drawn(values: object, **options: object) -> np.ndarray:
         return np.asarray(nt.render(cell, values=values, **{**SMALL, **options}))  # type: ignore[arg-type]

@@ -38,7 +38,6 @@ def test_numbers_of_points_are_on_the_membrane_and_in_files(cell: nt.Morphology,
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_a_recording_without_a_circuit_is_filmed_on_its_cell(circuit_folder: Path) -> None:
     circuit = nt.Circuit(circuit_folder)
     name = next(name for name, path in circuit.reports.items() if not nt.Report(path).is_of_spikes)
@@ -56,7 +55,6 @@ def test_a_recording_without_a_circuit_is_filmed_on_its_cell(circuit_folder: Pat
     assert is_drawn(mesh.render(values=at_once, title="voltage", unit=report.units, **SMALL))
 
 
-@pytest.mark.usefixtures("can_draw")
 def test_what_a_solver_finds_at_nodes_goes_back_onto_the_surface(cell: nt.Morphology) -> None:
     mesh = nt.mesh(cell, level=1)
     # Mesh generators add nodes within behind those of the surface.
@@ -67,7 +65,6 @@ def test_what_a_solver_finds_at_nodes_goes_back_onto_the_surface(cell: nt.Morpho
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_trimesh_goes_in_and_out_with_its_numbers(cell: nt.Morphology) -> None:
     pytest.importorskip("trimesh")
     mesh = nt.mesh(cell, level=1)
@@ -78,7 +75,6 @@ def test_trimesh_goes_in_and_out_with_its_numbers(cell: nt.Morphology) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_one_figure_has_cells_and_a_mesh_with_numbers(cell: nt.Morphology) -> None:
     region = nt.Mesh.from_arrays([[0, 0, 0], [200, 0, 0], [0, 200, 0], [0, 0, 200]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     glass = {"mesh": region, "values": [0.0, 1.0, 2.0, 3.0], "opacity": 0.4}
@@ -98,7 +94,6 @@ def test_a_batch_of_meshes_keeps_a_number_for_each_vertex(tmp_path: Path) -> Non
 
 
 @pytest.mark.full
-@pytest.mark.usefixtures("can_draw")
 def test_a_mesh_is_turned_in_a_film_with_its_colors(cell: nt.Morphology) -> None:
     mesh = nt.mesh(cell, level=1)
     frames = list(nt.film(mesh, values="radius", turntable=True, frames=3, **SMALL))

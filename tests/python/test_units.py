@@ -130,7 +130,6 @@ def test_types_that_no_point_has_are_told(cell: nt.Morphology) -> None:
         nt.html(cell, types=["axon", "basal"])
 
 
-@pytest.mark.usefixtures("can_draw")
 class TestPictures:
     def test_masked_points_are_gray(self, cell: nt.Morphology) -> None:
         numbers = np.linspace(0.0, 1.0, len(cell))

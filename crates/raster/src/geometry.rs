@@ -7,7 +7,7 @@ use neurotess_mesh::{Role, SurfaceVertex, TracingPoint};
 use neurotess_picture::color::ColorTable;
 use neurotess_picture::recolor::Contrast;
 use neurotess_picture::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
-use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint, VisibleKey};
+use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint, VisibleKey, Watch};
 use neurotess_refine::{PatchBlock, PointNumbers, RefineOptions, Refinement};
 use rayon::prelude::*;
 
@@ -38,6 +38,7 @@ pub(crate) struct Painting<'a> {
     pub(crate) colors: &'a Colors<'a>,
     /// Half the width (sub-pixels) of the wireframe's lines; 0: none.
     pub(crate) wire: f32,
+    pub(crate) watch: &'a Watch,
 }
 
 impl Painting<'_> {
@@ -167,13 +168,16 @@ fn keys_of<'a>(template: &SceneTemplate<'a>) -> Cow<'a, [u32]> {
     }
 }
 
-/// An instance on the grid; none if nothing of it shows.
+/// An instance on the grid; none if nothing of it shows, less of it if the picture is stopped.
 pub(crate) fn drawn<'a>(
     scene: &'a Scene<'a>,
     job: &Job<'a>,
     painting: &Painting<'a>,
     counts: &Counts,
 ) -> Option<Drawn<'a>> {
+    if painting.watch.is_stopped() {
+        return None;
+    }
     let template = &scene.templates[job.instance.template.0 as usize];
     let placed = Placed::new(painting, job.instance, template.template.mesh);
     let shown = shown(template, &placed, painting)?;
@@ -217,7 +221,7 @@ pub(crate) fn drawn<'a>(
         let mut vertices = Vertices::default();
         let mut bins = Bins::default();
         let mut refined = PatchBlock::default();
-        for &block in blocks {
+        for &block in blocks.iter().filter(|_| !painting.watch.is_stopped()) {
             refinement.patch_block(block, &mut refined);
             let first = vertices.vertices.len() as u32;
             let made = refined.vertices.iter();

@@ -239,6 +239,7 @@ impl Painter<'_> {
             look,
             colors: &colors,
             wire: 0.5 * look.wire * setup.scale as f32,
+            watch: self.watch,
         };
         let mut tiles: Vec<Option<Tile<H, S>>> = (0..grid.len()).map(|_| None).collect();
         let shared = shared_colors(scene, &colors);
@@ -260,26 +261,24 @@ impl Painter<'_> {
             });
             let (batch, others) = rest.split_at(together.count());
             rest = others;
-            let drawn = batch.par_iter().map(|job| {
-                (!self.watch.is_stopped())
-                    .then(|| geometry::drawn(scene, job, &painting, self.counts))
-                    .flatten()
-            });
+            let drawn = batch
+                .par_iter()
+                .map(|job| geometry::drawn(scene, job, &painting, self.counts));
             let drawn: Vec<Drawn<'_>> = drawn.flatten().collect();
             if self.watch.is_stopped() {
                 return None;
             }
-            rasterize(&mut tiles, grid, &drawn);
+            rasterize(&mut tiles, grid, &drawn, self.watch);
         }
         if let Some(markers) = scene.markers {
-            rasterize(&mut tiles, grid, &markers.drawn(&painting));
+            rasterize(&mut tiles, grid, &markers.drawn(&painting), self.watch);
         }
         for (mesh, number) in scene.meshes.iter().zip(0..) {
             if self.watch.is_stopped() {
                 return None;
             }
             let drawn: Vec<Drawn<'_>> = mesh.drawn(number, &painting).into_iter().collect();
-            rasterize(&mut tiles, grid, &drawn);
+            rasterize(&mut tiles, grid, &drawn, self.watch);
         }
         (!self.watch.is_stopped()).then_some(tiles)
     }
@@ -293,6 +292,7 @@ impl Painter<'_> {
             tiles: lit,
             radius,
             most,
+            watch: self.watch,
         };
         Some(occlusion.shares())
     }
@@ -307,7 +307,7 @@ impl Painter<'_> {
             projection, lights, ..
         } = self.setup;
         let lit = |(index, tile): (usize, &Option<Tile<H, S>>)| {
-            let tile = tile.as_ref()?;
+            let tile = tile.as_ref().filter(|_| !self.watch.is_stopped())?;
             let corner = grid.corner(index);
             let mut made = LitTile::new();
             for place in 0..IN_TILE {
@@ -371,6 +371,9 @@ impl Painter<'_> {
             return None;
         }
         let shares = self.shares(grid, &lit);
+        if self.watch.is_stopped() {
+            return None;
+        }
         Some(self.gathered(band, &lit, shares.as_ref()))
     }
 

@@ -129,6 +129,9 @@ fn weights<const S: usize>(painter: &Painter<'_>, band: &Band) -> Option<Weights
     let lit = painter.lit(grid, &tiles);
     let shares = painter.shares(grid, &lit);
     drop(lit);
+    if painter.watch.is_stopped() {
+        return None;
+    }
     let width = painter.setup.size[0];
     let rows: Vec<Collected> = band
         .rows

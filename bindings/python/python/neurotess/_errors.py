@@ -86,7 +86,7 @@ class MeshError(NeurotessError):
 
 
 class RenderError(NeurotessError):
-    """A picture that cannot be drawn: there is no graphics adapter, or it fails."""
+    """A picture that cannot be drawn: nothing is in it, or the graphics adapter that was named is not there or fails."""
 
 
 class NeurotessWarning(UserWarning):

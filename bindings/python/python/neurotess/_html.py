@@ -91,7 +91,7 @@ def _shown(title: str, rows: Iterable[tuple[str, str | None]], draw: Callable[[]
 
 
 def _png(draw: Callable[[], Image]) -> str | None:
-    """The picture as base64; none where there is no driver, or nothing to see: a table is better than an error."""
+    """The picture as base64; none where there is nothing to see: a table is better than an error."""
     from ._errors import NeurotessError
 
     with warnings.catch_warnings():

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import os
 import warnings
 
-from ._errors import NeurotessWarning
+from ._errors import NeurotessWarning, RenderError
 from ._groups import ungrouped
 from ._packages import needed
 from ._pictures import Image, render
-from ._scene import check_names, drawing_of
+from ._scene import DrawnCircuit, check_names, drawing_of
 from ._series import Times
 
 TYPE_CHECKING = False
@@ -194,9 +195,8 @@ class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
         if not options.pop("cache", True):
             options["no_cache"] = True
         given = {**self._options, "color_by": color_by, "size": self._size}
-        quick = {**options, "lod": "exploration", "budget": self._budget}
         full = drawing_of(self._what, {**options, "lod": "static"}, self._adapter, given)
-        made = (drawing_of(self._what, quick, self._adapter, given), full)
+        made = (self._quick(options, given), full)
         for message in full.messages:
             warnings.warn(NeurotessWarning(message), stacklevel=3)
         first = self._drawings is None
@@ -206,6 +206,18 @@ class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
         if first:
             eye, target, up, fov, self._orthographic = full.camera(0)
             self._home = self._camera = (eye, target, up, fov)
+
+    def _quick(self, options: dict[str, Any], given: dict[str, Any]) -> _neurotess.Drawing:
+        """What is drawn while something moves: circuits within a budget, by an adapter if there is one; else coarsely."""
+        explored = {**options, "lod": "exploration", "budget": self._budget}
+        named = self._adapter or os.environ.get("NEUROTESS_ADAPTER")
+        if named != "cpu" and (named or isinstance(self._what, DrawnCircuit)):
+            try:
+                return drawing_of(self._what, explored, self._adapter, given)
+            except RenderError:
+                if named:
+                    raise
+        return drawing_of(self._what, {**options, "pixels": 1.0, "ao": 0.0}, self._adapter, given)
 
     def _drop(self) -> None:
         for drawing in self._drawings or ():

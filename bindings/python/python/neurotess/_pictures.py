@@ -144,7 +144,7 @@ def render(
     """Draws cells or a circuit, without a window: a cell or a file (or whatever `mesh` takes), several of them,
     or a `Circuit`; or surfaces, alone or among cells: a `Mesh`, or any with `vertices` and `faces` (µm), as those of trimesh.
 
-    The options are those of ``neurotess render``; a graphics card is not needed, a Vulkan driver is.
+    The options are those of ``neurotess render``. The processor draws; `adapter` names a graphics adapter instead.
 
     Options of the camera, of what is around the cells, and of markers can be in groups: ``camera={"view": "iso", "fov":
     30}``, ``scene={"background": "black", "scale_bar": True}``, ``markers={"synapses": True, "shape": "contact"}``.

@@ -43,11 +43,11 @@ PAGE = {
 class View:
     """Cells or a circuit in a notebook, to be turned, colored and pointed at.
 
-    ``renderer="browser"``: the page of `html` in the notebook. The browser draws it, so it needs no graphics driver where
-    the kernel runs, and it stays in the notebook that is saved or exported. It is what you get where all options are such
+    ``renderer="browser"``: the page of `html` in the notebook. The browser draws it, and it stays in the notebook that is saved or exported. It is what you get where all options are such
     as pages have and the page would have up to 20 MB, of circuits up to 50 cells.
 
-    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, and all frames of a `report`.
+    ``renderer="kernel"``: the kernel draws what the browser shows, of circuits of any size, and all frames of a `report`. It
+    needs no graphics driver; large circuits move more smoothly with an adapter.
     Drag to turn, drag with Shift or the right button to move, use the wheel to come nearer; a double click shows all
     again.
 
