@@ -17,6 +17,7 @@
 //! and roots of 32 bits in one order; sines and powers come from tables that `libm` fills.
 #![forbid(unsafe_code)]
 
+mod bands;
 mod bins;
 mod bytes;
 mod fragment;

@@ -1,26 +1,21 @@
-//! Pictures of any size, band by band.
-//!
-//! A **band** is as many rows of pixels as memory allows. What it is drawn of reaches beyond it as far as ambient
-//! occlusion does, so that bands fit together; where nothing shows, there are no tiles.
+//! Pictures of any size, band by band. Where nothing shows, there are no tiles.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use neurotess_mesh::Surface as _;
 use neurotess_picture::color::{ColorTable, linear};
-use neurotess_picture::{Image, LARGEST, PictureOptions, Viewpoint, Watch};
+use neurotess_picture::{Image, PictureOptions, Viewpoint, Watch};
 use neurotess_refine::{HIGHEST_LEVEL, Refinement};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::bands::{Band, Setup};
 use crate::bytes;
 use crate::geometry::{self, Colors, Job, Painting, shared_colors};
 use crate::grid::{Grid, IN_TILE, TILE};
-use crate::light::Lights;
-use crate::occlusion::{BLUR, LitTile, Occlusion, Shares};
-use crate::projection::Projection;
+use crate::occlusion::{LitTile, Occlusion, Shares};
 use crate::sample::{Held, Surface};
 use crate::scene::Scene;
 use crate::triangle::{Drawn, Tile, rasterize};
@@ -102,74 +97,8 @@ impl Counts {
     }
 }
 
-/// Most sub-pixels of a band, with what is around it: samples of all of them would take 800 MB, of a cell's a tenth.
-const MAX_BAND: u64 = 1 << 24;
 /// Patches of instances that are on the grid at once: their triangles take 100 MB or so.
 const MAX_BATCH: usize = 1 << 17;
-
-/// Rows of pixels that are drawn at once.
-pub(crate) struct Band {
-    /// Rows of pixels.
-    pub(crate) rows: Range<u32>,
-    pub(crate) grid: Grid,
-}
-
-/// How a picture is divided and finished.
-pub(crate) struct Setup {
-    pub(crate) size: [u32; 2],
-    /// Sub-pixels per pixel, along one side.
-    pub(crate) scale: u32,
-    pub(crate) many_samples: bool,
-    /// Radius of occlusion: µm, and most sub-pixels.
-    pub(crate) occlusion: Option<(f32, f32)>,
-    pub(crate) projection: Projection,
-    pub(crate) lights: Lights,
-}
-
-impl Setup {
-    pub(crate) fn new(view: &Viewpoint, options: &PictureOptions) -> Self {
-        let many_samples = options.samples_in_sub_pixel() > 1;
-        let scale = options.sub_pixels(options.samples_in_sub_pixel());
-        let size = options.size.map(|n| n.clamp(1, LARGEST));
-        Self {
-            size,
-            scale,
-            many_samples,
-            occlusion: options.occlusion.reach(&view.camera, size[1] * scale),
-            projection: Projection::new(view, options, scale),
-            lights: Lights::new(&options.look),
-        }
-    }
-
-    /// Sub-pixels around a band that what is in it depends on.
-    fn margin(&self) -> i32 {
-        self.occlusion.map_or(0, |(_, most)| most as i32 + BLUR + 2)
-    }
-
-    /// The bands from above.
-    pub(crate) fn bands(&self) -> Vec<Band> {
-        let margin = self.margin();
-        let [width, height] = self.size;
-        let scale = self.scale as i32;
-        let across = -margin..width as i32 * scale + margin;
-        let rows = (MAX_BAND / across.len() as u64) as i64 - 2 * i64::from(margin);
-        // At least a row of tiles, lest most of what is drawn is around.
-        let step = (rows / i64::from(scale))
-            .max(i64::from(TILE / scale))
-            .max(1) as usize;
-        (0..height)
-            .step_by(step)
-            .map(|top| {
-                let rows = top..height.min(top + step as u32);
-                let down = rows.start as i32 * scale - margin..rows.end as i32 * scale + margin;
-                Band {
-                    rows,
-                    grid: Grid::new([across.clone(), down], self.many_samples),
-                }
-            })
-            .collect()
-    }
-}
 
 /// Draws a picture and calls `take` with its bands from the top: the first row of each, and its pixels.
 ///

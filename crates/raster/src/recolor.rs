@@ -12,9 +12,10 @@ use neurotess_picture::{
 };
 use rayon::prelude::*;
 
+use crate::bands::{Band, Setup};
 use crate::bytes;
 use crate::fragment::Fragment;
-use crate::picture::{Band, Cost, Counts, Painter, PictureError, Setup, pixel_at};
+use crate::picture::{Cost, Counts, Painter, PictureError, pixel_at};
 use crate::sample::{Held, Surface};
 use crate::scene::Scene;
 use crate::triangle::Tile;
