@@ -58,8 +58,8 @@ impl Setup {
         let margin = self.margin();
         let [width, height] = self.size;
         let scale = self.scale as i32;
-        let across = -margin..width as i32 * scale + margin;
-        let rows = (MAX_BAND / across.len() as u64) as i64 - 2 * i64::from(margin);
+        let across = u64::from(width * self.scale) + 2 * margin as u64;
+        let rows = (MAX_BAND / across) as i64 - 2 * i64::from(margin);
         // At least a row of tiles, lest most of what is drawn is around.
         let step = (rows / i64::from(scale))
             .max(i64::from(TILE / scale))
@@ -68,11 +68,13 @@ impl Setup {
             .step_by(step)
             .map(|top| {
                 let rows = top..height.min(top + step as u32);
-                let down = rows.start as i32 * scale - margin..rows.end as i32 * scale + margin;
-                Band {
-                    rows,
-                    grid: Grid::new([across.clone(), down], self.many_samples),
-                }
+                let kept = [
+                    0..width as i32 * scale,
+                    rows.start as i32 * scale..rows.end as i32 * scale,
+                ];
+                let widened = |by: i32| kept.clone().map(|kept| kept.start - by..kept.end + by);
+                let grid = Grid::new(widened(margin), widened(BLUR), self.many_samples);
+                Band { rows, grid }
             })
             .collect()
     }

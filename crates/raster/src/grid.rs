@@ -13,6 +13,8 @@ pub(crate) const IN_TILE: usize = (TILE * TILE) as usize;
 pub(crate) struct Grid {
     /// Sub-pixels that are drawn, across and down.
     pub(crate) drawn: [Range<i32>; 2],
+    /// Those whose light matters; the others are drawn for what they occlude.
+    kept: [Range<i32>; 2],
     /// Number of tiles across and down.
     pub(crate) tiles: [i32; 2],
     /// Whether a sub-pixel has four samples; else one, in its middle.
@@ -20,10 +22,11 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    pub(crate) fn new(drawn: [Range<i32>; 2], many_samples: bool) -> Self {
+    pub(crate) fn new(drawn: [Range<i32>; 2], kept: [Range<i32>; 2], many_samples: bool) -> Self {
         let tiles = [0, 1].map(|k| (drawn[k].len() as i32 + TILE - 1) / TILE);
         Self {
             drawn,
+            kept,
             tiles,
             many_samples,
         }
@@ -32,6 +35,12 @@ impl Grid {
     /// Number of tiles.
     pub(crate) fn len(&self) -> usize {
         self.tiles[0] as usize * self.tiles[1] as usize
+    }
+
+    /// Whether the light of anything in a tile matters.
+    pub(crate) fn is_kept(&self, tile: usize) -> bool {
+        let corner = self.corner(tile);
+        (0..2).all(|k| corner[k] < self.kept[k].end && corner[k] + TILE > self.kept[k].start)
     }
 
     /// The upper left sub-pixel of a tile.

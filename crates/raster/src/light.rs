@@ -12,7 +12,7 @@ pub(crate) struct Lights {
     key: Option<Vec3>,
     fill: Vec3,
     /// Color of edges.
-    edge: [f32; 4],
+    ink: [f32; 4],
 }
 
 /// How a surface is lit, whatever its color.
@@ -22,8 +22,6 @@ pub(crate) struct Lit {
     pub(crate) factor: f32,
     /// White that is added.
     pub(crate) white: f32,
-    /// Share of the edge's color where colors do not stand out.
-    pub(crate) edge: f32,
     /// The normal that it was lit with.
     pub(crate) normal: Vec3,
 }
@@ -38,7 +36,7 @@ impl Lights {
         Self {
             key: key.map(|key| key.normalize_or(KEY)),
             fill: Vec3::new(0.7, -0.35, 0.6).normalize_or(Vec3::X),
-            edge: edge_color(look),
+            ink: edge_color(look),
         }
     }
 
@@ -47,15 +45,10 @@ impl Lights {
         let world = surface.normal();
         // A thin line is lit like a surface that faces the viewer.
         let n = world.lerp(to_eye, surface.thin()).normalize_or(to_eye);
-        let facing = world.dot(to_eye);
-        let across = (1.0 - facing * facing).max(0.0).sqrt();
-        let t = ((across - 0.5) / 0.35).clamp(0.0, 1.0);
-        let edge = 0.7 * (t * t * (3.0 - 2.0 * t));
         let Some(key) = self.key else {
             return Lit {
                 factor: 1.0,
                 white: 0.0,
-                edge: 0.0,
                 normal: n,
             };
         };
@@ -75,19 +68,28 @@ impl Lights {
         Lit {
             factor: diffuse + rim,
             white: sheen + 0.25 * rim,
-            edge,
             normal: n,
         }
     }
 
-    /// A color in this light.
-    pub(crate) fn colored(&self, surface: Surface, lit: &Lit) -> [f32; 3] {
-        let color = surface.color();
-        let bare = color.map(|c| c * lit.factor + lit.white);
-        let share = lit.edge * surface.edge();
-        if share == 0.0 {
+    /// Share of the edge's color where a color does not stand out at all: rises towards the outline.
+    pub(crate) fn edge(&self, surface: Surface, to_eye: Vec3) -> f32 {
+        if self.key.is_none() {
+            return 0.0;
+        }
+        let facing = surface.normal().dot(to_eye);
+        let across = (1.0 - facing * facing).max(0.0).sqrt();
+        let t = ((across - 0.5) / 0.35).clamp(0.0, 1.0);
+        0.7 * (t * t * (3.0 - 2.0 * t))
+    }
+
+    /// The color of a surface in this light.
+    pub(crate) fn colored(&self, surface: Surface, lit: &Lit, to_eye: Vec3) -> [f32; 3] {
+        let bare = surface.color().map(|c| c * lit.factor + lit.white);
+        if surface.edge() == 0.0 {
             return bare;
         }
-        [0, 1, 2].map(|k| bare[k] + share * (self.edge[k] - bare[k]))
+        let share = self.edge(surface, to_eye) * surface.edge();
+        [0, 1, 2].map(|k| bare[k] + share * (self.ink[k] - bare[k]))
     }
 }

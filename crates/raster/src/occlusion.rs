@@ -63,7 +63,9 @@ impl Occlusion<'_> {
                 })
             })
             .collect();
-        let raw = self.by_tile(|tile, lit| self.reaching(tile, lit, &taps));
+        let depths = Depths::new(self.grid, self.tiles, self.most);
+        let raw = self.by_tile(|tile, lit| self.reaching(tile, lit, &depths, &taps));
+        drop(depths);
         let rows = self.by_tile(|tile, lit| self.blurred(tile, lit, &raw, true));
         self.by_tile(|tile, lit| self.blurred(tile, lit, &rows, false))
     }
@@ -72,23 +74,19 @@ impl Occlusion<'_> {
         let tiles = self.tiles.par_iter().enumerate();
         tiles
             .map(|(tile, lit)| {
-                let lit = lit.as_ref().filter(|_| !self.watch.is_stopped())?;
-                Some(of(tile, lit))
+                let lit = lit.as_ref().filter(|_| self.grid.is_kept(tile))?;
+                (!self.watch.is_stopped()).then(|| of(tile, lit))
             })
             .collect()
     }
 
-    fn depth(&self, pixel: [i32; 2]) -> f32 {
-        let Some((tile, place)) = self.grid.place(pixel) else {
-            return 0.0;
-        };
-        match &self.tiles[tile] {
-            Some(lit) => lit.depths[place],
-            None => 0.0,
-        }
-    }
-
-    fn reaching(&self, tile: usize, lit: &LitTile, taps: &[[Vec2; TAPS]]) -> Vec<f32> {
+    fn reaching(
+        &self,
+        tile: usize,
+        lit: &LitTile,
+        depths: &Depths,
+        taps: &[[Vec2; TAPS]],
+    ) -> Vec<f32> {
         let corner = self.grid.corner(tile);
         let mut shares = vec![1.0; IN_TILE];
         for (place, (&depth, &normal)) in lit.depths.iter().zip(&lit.normals).enumerate() {
@@ -105,11 +103,12 @@ impl Occlusion<'_> {
             // directions.
             let [x, y] = pixel.map(|n| (n + 65536) as u32);
             let turn = (x & 3) + 4 * ((y & 3) ^ ((x & 1) << 1));
+            let farthest = 1.0 / (2.0 * radius);
             let mut sum = 0.0;
             for tap in &taps[turn as usize] {
                 let offset = *tap * reach;
                 let other = [pixel[0] + rounded(offset.x), pixel[1] + rounded(offset.y)];
-                let there = self.depth(other);
+                let there = depths.at(other);
                 if there == 0.0 {
                     continue;
                 }
@@ -117,7 +116,7 @@ impl Occlusion<'_> {
                 let distance = away.length();
                 let rise = (away.dot(normal) / distance.max(1e-20) - 0.12).max(0.0);
                 // Up to twice the radius, since things that are closer to the eye also occlude.
-                let far = (distance / (2.0 * radius)).min(1.0);
+                let far = (distance * farthest).min(1.0);
                 sum += rise * (1.0 - far * far);
             }
             shares[place] = (1.0 - STRENGTH * sum / TAPS as f32).max(0.0);
@@ -175,6 +174,48 @@ impl Occlusion<'_> {
             }
         }
         out
+    }
+}
+
+/// Depths of all tiles, to be looked up wherever a tap falls: also beyond the grid, as far as taps reach.
+struct Depths {
+    /// By tile, of those around the grid, too: where its depths begin; 0, where nothing is, for tiles that hold nothing.
+    begins: Vec<u32>,
+    depths: Vec<f32>,
+    /// Tiles in a row.
+    across: usize,
+    /// The upper left sub-pixel of the first tile.
+    corner: [i32; 2],
+}
+
+impl Depths {
+    fn new(grid: &Grid, tiles: &[Option<LitTile>], most: f32) -> Self {
+        let around = most as i32 / TILE + 2;
+        let [across, down] = grid.tiles.map(|n| (n + 2 * around) as usize);
+        let mut begins = vec![0; across * down];
+        let mut depths = vec![0.0; IN_TILE];
+        for (tile, lit) in tiles.iter().enumerate() {
+            let Some(lit) = lit else { continue };
+            let (x, y) = (tile % grid.tiles[0] as usize, tile / grid.tiles[0] as usize);
+            begins[(y + around as usize) * across + x + around as usize] = depths.len() as u32;
+            depths.extend_from_slice(&lit.depths);
+        }
+        let corner = [0, 1].map(|k| grid.drawn[k].start - around * TILE);
+        Self {
+            begins,
+            depths,
+            across,
+            corner,
+        }
+    }
+
+    /// Depth (µm) at a sub-pixel; 0: nothing is there.
+    #[inline]
+    fn at(&self, pixel: [i32; 2]) -> f32 {
+        const SIDE: usize = TILE as usize;
+        let [x, y] = [0, 1].map(|k| (pixel[k] - self.corner[k]) as usize);
+        let begin = self.begins[y / SIDE * self.across + x / SIDE];
+        self.depths[begin as usize + y % SIDE * SIDE + x % SIDE]
     }
 }
 

@@ -239,8 +239,16 @@ impl Painter<'_> {
             let tile = tile.as_ref().filter(|_| !self.watch.is_stopped())?;
             let corner = grid.corner(index);
             let mut made = LitTile::new();
+            let is_kept = grid.is_kept(index);
             for place in 0..IN_TILE {
                 if tile.is_empty(place) {
+                    continue;
+                }
+                if !is_kept {
+                    let solid = |&(_, held): &(f32, &H)| !held.surface().is_translucent();
+                    if let Some((near, _)) = tile.covered(place).find(solid) {
+                        made.depths[place] = kept_depth(projection.depth(near));
+                    }
                     continue;
                 }
                 let to_eye = projection.eye_from(pixel_at(corner, place));
@@ -259,7 +267,7 @@ impl Painter<'_> {
                             if solid.is_none() && !surface.is_translucent() {
                                 solid = Some((projection.depth(near), on.normal));
                             }
-                            lights.colored(surface, &on)
+                            lights.colored(surface, &on, to_eye)
                         }
                     };
                     last = Some((surface, light));
@@ -270,7 +278,7 @@ impl Painter<'_> {
                 }
                 made.colors[place] = sum;
                 if let Some((depth, normal)) = solid {
-                    made.depths[place] = if depth == 0.0 { 1e-20 } else { depth };
+                    made.depths[place] = kept_depth(depth);
                     made.normals[place] = normal;
                 }
             }
@@ -346,6 +354,11 @@ impl Painter<'_> {
         rows.zip(band.rows.clone().into_par_iter()).for_each(gather);
         image
     }
+}
+
+/// A depth that is not 0, which stands for nothing.
+fn kept_depth(depth: f32) -> f32 {
+    if depth == 0.0 { 1e-20 } else { depth }
 }
 
 /// The sub-pixel at a place of a tile.

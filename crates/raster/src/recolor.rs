@@ -208,19 +208,17 @@ impl<const S: usize> Gathering<'_, S> {
                 let to_eye = projection.eye_from(pixel_at(self.band.grid.corner(tile), place));
                 let mut last = None;
                 for (_, held) in samples.covered(place) {
-                    let lit = match last {
+                    let (lit, edge) = match last {
                         Some((surface, lit)) if surface == held.surface => lit,
-                        _ => lights.on(held.surface, to_eye),
+                        _ => {
+                            let lit = lights.on(held.surface, to_eye);
+                            (lit, lights.edge(held.surface, to_eye))
+                        }
                     };
-                    last = Some((held.surface, lit));
+                    last = Some((held.surface, (lit, edge)));
                     fixed[0] += lit.white * reaching;
                     fixed[1] += share;
-                    let sum = [
-                        lit.factor,
-                        lit.factor * lit.edge,
-                        lit.white * lit.edge,
-                        lit.edge,
-                    ];
+                    let sum = [lit.factor, lit.factor * edge, lit.white * edge, edge];
                     for (key, part) in held.keys.iter().zip(held.shares) {
                         if part == 0 {
                             continue;
