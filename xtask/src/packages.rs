@@ -1,7 +1,7 @@
 //! Whether each feature builds alone, and whether each crate can be packed.
 
 use crate::lane::Lane;
-use crate::steps::{cargo, run};
+use crate::steps::{cargo, output, run};
 
 /// What is checked without warnings: a package and its features. All of them together are what the
 /// workspace builds anyway.
@@ -17,11 +17,15 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess", "synth,circuit"),
     ("neurotess", "render"),
     ("neurotess", "render,circuit"),
+    ("neurotess", "gpu"),
+    ("neurotess", "gpu,circuit"),
     ("neurotess-web", ""),
     ("neurotess-cli", ""),
     ("neurotess-cli", "render"),
+    ("neurotess-cli", "gpu"),
     ("neurotess-python", ""),
     ("neurotess-python", "render"),
+    ("neurotess-python", "gpu"),
 ];
 
 /// Those of the quick lane: the library with nothing optional, the core of pages in browsers, and the command with
@@ -48,7 +52,22 @@ pub(crate) fn features(lane: Lane) -> anyhow::Result<String> {
         }
         run(check.args(["--", "-D", "warnings"]))?;
     }
+    without_graphics()?;
     Ok(format!("{} combinations", combinations.len()))
+}
+
+/// Checks that pictures by the processor need no graphics stack: it takes minutes to compile.
+fn without_graphics() -> anyhow::Result<()> {
+    let tree = "tree --locked --edges normal --prefix none --package neurotess-cli --no-default-features --features render";
+    let tree = output(&mut cargo(tree))?;
+    let graphics = ["wgpu ", "naga ", "winit ", "eframe "];
+    let found = tree
+        .lines()
+        .find(|line| graphics.iter().any(|name| line.starts_with(name)));
+    match found {
+        Some(found) => anyhow::bail!("the feature 'render' of the command must not need {found}"),
+        None => Ok(()),
+    }
 }
 
 /// Packs every crate that is for others. What a package would build is not built again.

@@ -6,8 +6,8 @@ use std::borrow::Cow;
 use glam::Vec3;
 
 use crate::bins::Vertex;
-use crate::meshes::Sheet;
 use crate::sample::Surface;
+use crate::sheet::Sheet;
 
 /// What the triangles of a surface have in common.
 pub(crate) struct Paint<'a> {
@@ -104,6 +104,24 @@ impl Fragment<'_> {
     }
 }
 
+/// What is kept of a fragment for each sample that it covers.
+pub(crate) trait Held: Copy + Default + Send + Sync {
+    /// Of a fragment.
+    fn of(fragment: &Fragment<'_>) -> Self;
+    /// Its surface, without keys.
+    fn surface(&self) -> Surface;
+}
+
+impl Held for Surface {
+    fn of(fragment: &Fragment<'_>) -> Self {
+        fragment.surface()
+    }
+
+    fn surface(&self) -> Surface {
+        *self
+    }
+}
+
 /// A color under a line of the wireframe.
 fn lined(color: [f32; 3], share: f32) -> [f32; 3] {
     if share <= 0.0 {
@@ -135,22 +153,4 @@ pub(crate) fn lines(shares: [f32; 3], widths: [f32; 3], is_half: bool, half_widt
     let crowded = widest * half_width * 4.0;
     let t = (nearest - (half_width - 0.5)).clamp(0.0, 1.0);
     (1.0 - t * t * (3.0 - 2.0 * t)) * (1.6 - crowded).clamp(0.25, 1.0)
-}
-
-pub(crate) fn bayer([x, y]: [u32; 2]) -> f32 {
-    let (x, y) = (x & 1, y & 1);
-    (((x ^ y) * 2 + y) as f32 + 0.5) / 4.0
-}
-
-/// Mask of so many samples for a coverage, dithered over neighboring sub-pixels.
-pub(crate) fn mask_of(coverage: f32, samples: u32, [x, y]: [i32; 2]) -> u32 {
-    let all = (1 << samples) - 1;
-    if coverage >= 1.0 {
-        return all;
-    }
-    let (x, y) = ((x + 4096) as u32, (y + 4096) as u32);
-    let count = (coverage.clamp(0.0, 1.0) * samples as f32 + bayer([x, y])) as u32;
-    let turn = (x + 2 * y) % samples;
-    let bits = ((1_u32 << count) - 1) << turn;
-    (bits | (bits >> samples)) & all
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::bins::{Bins, Triangle, Vertices};
 use crate::fragment::Paint;
-use crate::geometry::{NO_INSTANCE, Painting, vertex};
+use crate::painting::{NO_INSTANCE, Painting, vertex};
 use crate::projection::Projection;
 use crate::triangle::Drawn;
 

@@ -14,9 +14,10 @@ use rayon::prelude::*;
 
 use crate::bands::{Band, Setup};
 use crate::bytes;
-use crate::fragment::Fragment;
-use crate::picture::{Cost, Counts, Painter, PictureError, pixel_at};
-use crate::sample::{Held, Surface};
+use crate::cost::{Cost, Counts, PictureError};
+use crate::fragment::{Fragment, Held};
+use crate::picture::{Painter, pixel_at};
+use crate::sample::Surface;
 use crate::scene::Scene;
 use crate::triangle::Tile;
 

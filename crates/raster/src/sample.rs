@@ -2,16 +2,6 @@
 
 use glam::Vec3;
 
-use crate::fragment::Fragment;
-
-/// What is kept of a fragment for each sample that it covers.
-pub(crate) trait Held: Copy + Default + Send + Sync {
-    /// Of a fragment.
-    fn of(fragment: &Fragment<'_>) -> Self;
-    /// Its surface, without keys.
-    fn surface(&self) -> Surface;
-}
-
 /// A surface at a sample: normal in 26 bits, color in 24, how much of an edge its color has in seven, how thin its tube is in
 /// six, and whether it is translucent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,16 +84,6 @@ impl Surface {
     /// From 0 for tubes at least two pixels wide to 1 for width 0.
     pub(crate) fn thin(self) -> f32 {
         self.bits(THIN, 6) / THINS
-    }
-}
-
-impl Held for Surface {
-    fn of(fragment: &Fragment<'_>) -> Self {
-        fragment.surface()
-    }
-
-    fn surface(&self) -> Surface {
-        *self
     }
 }
 

@@ -7,7 +7,7 @@ use neurotess_picture::{AdaptiveSettings, CullView, Instance};
 use neurotess_refine::{Lod, LodView, patch_sphere};
 use rayon::prelude::*;
 
-use crate::geometry::Painting;
+use crate::painting::Painting;
 use crate::scene::SceneTemplate;
 
 /// An instance's transform, in 32 bits relative to the eye.

@@ -4,10 +4,10 @@ use neurotess_picture::Watch;
 use rayon::prelude::*;
 
 use crate::bins::{Piece, Triangle, Vertex};
-use crate::fragment::{Fragment, Paint, lines, mask_of};
+use crate::fragment::{Fragment, Held, Paint, lines};
 use crate::grid::{Grid, IN_TILE, TILE};
+use crate::masks::mask_of;
 use crate::projection::STEPS;
-use crate::sample::Held;
 
 /// Places of four samples in a sub-pixel (steps), those of GPUs; one sample is in the middle.
 const FOUR: [[i32; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];

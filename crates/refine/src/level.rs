@@ -5,12 +5,12 @@
 
 use neurotess_mesh::CoarseMesh;
 
+use crate::edge::Edge;
 use crate::evaluate::{
     CenterLines, Corners, EdgeCurves, EdgeKind, F32x4, Profiles, Vec3x4, hermite_tangents,
     loft_controls, soma_controls,
 };
 use crate::fours::four;
-use crate::plan::Edge;
 use crate::{EdgeRule, Lod, LodCriterion, LodView, Path};
 
 /// Highest level.

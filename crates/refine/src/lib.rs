@@ -23,6 +23,7 @@ mod anchors;
 mod bounding_sphere;
 mod coarse_surface;
 mod decode;
+mod edge;
 mod evaluate;
 mod explicit;
 mod fours;

@@ -12,33 +12,14 @@ use std::ops::Range;
 use neurotess_mesh::{CoarseMesh, PatchKind};
 use rayon::prelude::*;
 
-use crate::evaluate::{Corners, EdgeKind};
+pub(crate) use crate::edge::Edge;
+use crate::evaluate::Corners;
 use crate::fours::{Fours, four};
 use crate::level::{HIGHEST_LEVEL, bend, edge_levels};
 use crate::{Caps, Lod, Path, RefineOptions};
 use edges::find_edges;
 pub(crate) use edges::side_of;
 pub(crate) use faces::Numbers;
-
-/// An edge of the coarse mesh.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
-    /// The vertices where it starts and ends: along the path, or from the lower index to the
-    /// higher.
-    pub(crate) from: u32,
-    pub(crate) to: u32,
-    pub(crate) kind: EdgeKind,
-    pub(crate) level: u16,
-    /// Number of its first inner vertex, of which surfaces that have more than 32 bits of them keep the low ones: such
-    /// can be counted only.
-    pub(crate) first: u32,
-}
-
-impl Edge {
-    pub(crate) fn ends(&self) -> [u32; 2] {
-        [self.from, self.to]
-    }
-}
 
 /// All edges of the patches that are shown, and the edges and inner vertices of each of these.
 pub(crate) struct Plan {

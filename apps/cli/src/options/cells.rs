@@ -51,6 +51,7 @@ impl CellArgs {
         chosen != Self::default()
     }
 
+    #[cfg(feature = "render")]
     /// Selects these cells alone.
     pub(crate) fn list(&mut self, nodes: &[NodeRef]) {
         self.listed = Some(nodes.to_vec());

@@ -6,7 +6,8 @@ use neurotess::coloring::Film;
 use neurotess::picture::{BoundingSphere, Camera, Image, KeyColors, PictureOptions, Viewpoint};
 
 use super::coloring::PictureColors;
-use super::painter::{Cost, Painter, Recolored, Shown};
+use super::painter::{Cost, Painter, Recolored};
+use super::shown::Shown;
 
 /// A film, and what its next picture costs besides being colored.
 pub(super) struct FixedFilm {

@@ -25,8 +25,9 @@ use super::coloring::PictureColors;
 use super::film::FixedFilm;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
-use super::painter::{self, Open, Painter, Shown};
+use super::painter::{Open, Painter};
 use super::scene::RenderScene;
+use super::shown::{self, Shown};
 use super::{bounds, cameras, checks, coloring, draw, scene};
 use crate::options::size::Size;
 use crate::report::{self, Common, Entry, Failed, Reporter, Usage};
@@ -160,7 +161,7 @@ impl Drawing {
         (own, of_meshes): (Option<OwnNumbers>, Option<&MeshValues>),
         reporter: &Reporter,
     ) -> anyhow::Result<Self> {
-        painter::mode(&args)?;
+        shown::mode(&args)?;
         if own.is_none() && of_meshes.is_none() {
             checks::check_value(&args)?;
         }

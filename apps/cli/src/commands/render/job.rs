@@ -8,7 +8,7 @@ use neurotess::picture::{BoundingSphere, Camera, Placement};
 use super::args::RenderArgs;
 use super::cells::MeshedCell;
 use super::coloring::PictureColors;
-use super::painter::Shown;
+use super::shown::Shown;
 
 /// The scene, cameras and files of a run.
 pub(super) struct RenderJob<'a> {

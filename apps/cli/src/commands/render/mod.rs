@@ -22,6 +22,7 @@ mod painter;
 mod palette;
 mod scene;
 mod session;
+mod shown;
 mod stats;
 mod times;
 mod values;
@@ -58,7 +59,7 @@ pub(crate) use {
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
     let files = checks::files(args)?;
-    painter::mode(args)?;
+    shown::mode(args)?;
     for file in files.iter().chain(&args.stats) {
         output::check(file, args.force)?;
     }

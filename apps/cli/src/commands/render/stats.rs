@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::cells::MeshedCell;
 use super::color_check::ColorStats;
 use super::film::FilmStats;
-use super::painter::{Cost, Painter, SourceStats};
+use super::painter::{BudgetStats, Cost, Painter, SourceStats, StreamStats};
 use crate::report::{Entry, Failed};
 
 /// The documented JSON object; times are those of the last picture.
@@ -102,33 +102,6 @@ impl Stages {
             Stage::Draw => &mut self.draw,
         } += seconds;
     }
-}
-
-/// What `--lod exploration` drew and what it left out, in triangles.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct BudgetStats {
-    pub(crate) budget: u64,
-    pub(crate) wanted: u64,
-    /// Left out, or drawn more coarsely than within half a pixel.
-    pub(crate) left_out: u64,
-    /// Whether `wanted` and `left_out` may be more: in the largest scenes, not everything is asked.
-    pub(crate) at_least: bool,
-    pub(crate) neurons_in_picture: u64,
-    /// If not all tracings fit the adapter's memory.
-    pub(crate) streamed: Option<StreamStats>,
-}
-
-/// Tracings of which the adapter's memory does not hold all points at once.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct StreamStats {
-    pub(crate) tracings: usize,
-    /// Those that are there more finely than the others.
-    pub(crate) finer: usize,
-    /// Those that are there with all their points.
-    pub(crate) whole: usize,
-    /// Those that might show more finely than there is room for.
-    pub(crate) coarser: usize,
-    pub(crate) uploaded_bytes: u64,
 }
 
 /// Synapses and points of the scene, and how many of them the picture draws: they are left out where they lie

@@ -4,7 +4,6 @@ use std::fs;
 
 use hdf5_pure::FileBuilder;
 
-use crate::needs::gpu;
 use crate::work::{SMALL, Work};
 
 /// A network of two cells, 100 µm apart, with a synapse between them.

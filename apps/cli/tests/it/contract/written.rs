@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::needs::gpu;
 use crate::work::{SMALL, Work};
 
 /// Files that a document names as written.

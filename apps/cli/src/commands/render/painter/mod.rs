@@ -5,28 +5,24 @@
 
 #[cfg(feature = "gpu")]
 mod adapter;
+mod cost;
 mod processor;
 #[cfg(feature = "gpu")]
 mod vertex_source;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use itertools::Itertools;
 use neurotess::picture::color::ColorTable;
-use neurotess::picture::{
-    AdaptiveSettings, Image, Instance, KeyColors, PictureOptions, Placement, Template, TemplateId,
-    Viewpoint, VisibleKey, Watch,
-};
+use neurotess::picture::{Image, KeyColors, PictureOptions, Viewpoint, VisibleKey, Watch};
 use neurotess::raster;
-use neurotess::refine::LodCriterion;
 
 use super::args::{LodMode, RenderArgs};
-use super::cells::MeshedCell;
-use super::coloring::PictureColors;
 use super::job::RenderJob;
 use super::meshes::SceneMeshes;
+use super::shown::{Shown, mode};
 use crate::report::usage;
+
+pub(crate) use cost::{BudgetStats, Cost, SourceStats, StreamStats};
 
 /// A graphics device.
 #[cfg(feature = "gpu")]
@@ -80,48 +76,9 @@ pub(crate) struct Painter {
 }
 
 enum Kind {
-    Processor(processor::Processor),
+    Processor(Box<processor::Processor>),
     #[cfg(feature = "gpu")]
     Adapter(Box<adapter::Adapter>),
-}
-
-/// The cells of a picture.
-#[derive(Clone, Copy)]
-pub(crate) struct Shown<'a> {
-    pub(crate) args: &'a RenderArgs,
-    pub(crate) cells: &'a [&'a MeshedCell],
-    pub(crate) placements: &'a [(usize, Placement)],
-    pub(crate) colored: &'a PictureColors,
-}
-
-/// The time and memory that a picture took.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Cost {
-    /// Milliseconds from the first command to the last byte.
-    pub(crate) cpu_ms: f64,
-    /// Milliseconds by pass, if a GPU drew and supports timestamps.
-    pub(crate) gpu_ms: Option<Vec<(&'static str, f64)>>,
-    /// Number of tiles, or of the processor's bands.
-    pub(crate) tiles: usize,
-    /// Bytes of what it is drawn into and finished in.
-    pub(crate) target_bytes: u64,
-}
-
-/// What a picture draws, and what it holds.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SourceStats {
-    pub(crate) patches: u64,
-    pub(crate) patches_drawn: u64,
-    pub(crate) vertices: u64,
-    pub(crate) triangles: u64,
-    pub(crate) levels: BTreeMap<u32, u64>,
-    pub(crate) bytes: BTreeMap<&'static str, u64>,
-    pub(crate) bytes_per_point: f64,
-    pub(crate) exploration: Option<super::stats::BudgetStats>,
-    /// Synapses and points that are drawn, those in view, and all.
-    pub(crate) markers: Option<[usize; 3]>,
-    /// Meshes that are no cells, and their triangles.
-    pub(crate) meshes: Option<[u64; 2]>,
 }
 
 /// A picture that is colored anew.
@@ -203,7 +160,7 @@ impl Painter {
         let Some(device) = device else {
             let processor = processor::Processor::new(options, &job.shown(), meshes)?;
             return Ok(Self {
-                kind: Kind::Processor(processor),
+                kind: Kind::Processor(Box::new(processor)),
                 name: [PROCESSOR, "raster"].map(str::to_owned),
                 software: true,
             });
@@ -235,7 +192,10 @@ impl Painter {
         _job: &RenderJob<'_>,
         _meshes: SceneMeshes,
     ) -> anyhow::Result<Self> {
-        match *gpu {}
+        match Arc::into_inner(gpu) {
+            Some(never) => match never {},
+            None => anyhow::bail!("there is no adapter"),
+        }
     }
 
     /// Whether an adapter draws.
@@ -334,84 +294,5 @@ impl Recolored {
                 Ok(picture.image(gpu)?)
             }
         }
-    }
-}
-
-impl<'a> Shown<'a> {
-    /// Coarse meshes with the keys of their colors.
-    fn templates(&self) -> Vec<Template<'a>> {
-        let keyed = self.cells.iter().zip_eq(&self.colored.coloring.color_keys);
-        keyed
-            .map(|(cell, color_keys)| Template {
-                mesh: &cell.mesh,
-                color_keys,
-                values: &[],
-            })
-            .collect()
-    }
-
-    fn instances(&self, id: impl Fn(usize) -> TemplateId) -> Vec<Instance> {
-        let placements = self.placements.iter();
-        placements
-            .map(|&(cell, placement)| Instance {
-                placement,
-                ..Instance::new(id(cell))
-            })
-            .collect()
-    }
-
-    /// Coarse patches of all instances.
-    fn patches(&self) -> u64 {
-        let placements = self.placements.iter();
-        let patches = placements.map(|&(cell, _)| self.cells[cell].mesh.patches.len() as u64);
-        patches.sum()
-    }
-
-    /// How it is refined as it is drawn.
-    fn settings(&self) -> anyhow::Result<AdaptiveSettings> {
-        let args = self.args;
-        let lod = match mode(args)? {
-            LodMode::Homogeneous => LodCriterion::Homogeneous(args.level.unwrap_or(DEFAULT_LEVEL)),
-            LodMode::Static => LodCriterion::PixelError(0.5),
-            LodMode::Adaptive | LodMode::Prerefined | LodMode::Exploration => {
-                LodCriterion::PixelError(args.error() as f32)
-            }
-        };
-        Ok(AdaptiveSettings {
-            lod,
-            wireframe: args.wireframe,
-            ..AdaptiveSettings::default()
-        })
-    }
-}
-
-/// Level if none is given.
-const DEFAULT_LEVEL: u32 = 4;
-
-/// The mode that follows from the options.
-///
-/// # Errors
-/// Wrong usage: a level where levels follow from the error.
-pub(crate) fn mode(args: &RenderArgs) -> anyhow::Result<LodMode> {
-    let exploring = args.lod == Some(LodMode::Exploration);
-    if args.budget.is_some() && !exploring {
-        return usage("--budget is for --lod exploration");
-    }
-    if exploring && args.pixels.is_some() {
-        return usage("--lod exploration is within half a pixel: leave out --pixels");
-    }
-    match (args.lod, args.level) {
-        (Some(LodMode::Adaptive), Some(_)) => usage(
-            "--lod adaptive chooses levels by --pixels: leave out --level, or use --lod homogeneous",
-        ),
-        (Some(LodMode::Exploration | LodMode::Static), Some(_)) => {
-            usage("this --lod has no levels: leave out --level, or use --lod homogeneous")
-        }
-        (Some(LodMode::Static), None) if args.pixels.is_some() => {
-            usage("--lod static is within half a pixel: leave out --pixels, or use --lod adaptive")
-        }
-        (Some(mode), _) => Ok(mode),
-        (None, Some(_)) => Ok(LodMode::Homogeneous),
-        (None, None) => Ok(LodMode::Adaptive),
     }
 }

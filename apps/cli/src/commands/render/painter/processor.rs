@@ -12,7 +12,8 @@ use neurotess::raster::{
 
 use super::super::markers;
 use super::super::meshes::SceneMeshes;
-use super::{Cost, Recolored, Shown, SourceStats, Take};
+use super::super::shown::Shown;
+use super::{Cost, Recolored, SourceStats, Take};
 
 /// Draws by the processor.
 pub(super) struct Processor {

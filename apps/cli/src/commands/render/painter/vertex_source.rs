@@ -18,8 +18,8 @@ use super::super::cells::MeshedCell;
 use super::super::job::RenderJob;
 use super::super::markers;
 use super::super::meshes::{MeshKeys, SceneMeshes};
-use super::super::stats::{BudgetStats, StreamStats};
-use super::{SourceStats, mode};
+use super::super::shown::mode;
+use super::{BudgetStats, SourceStats, StreamStats};
 use crate::report::usage;
 
 /// A vertex source for pictures, and markers and meshes beside it.
