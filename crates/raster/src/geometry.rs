@@ -6,7 +6,7 @@ use glam::Vec3;
 use neurotess_mesh::{Role, SurfaceVertex, TracingPoint};
 use neurotess_picture::color::ColorTable;
 use neurotess_picture::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
-use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint};
+use neurotess_picture::{Frame, Instance, Look, Tile, Viewpoint, Watch};
 use neurotess_refine::{PatchBlock, PointNumbers, RefineOptions, Refinement};
 use rayon::prelude::*;
 
@@ -37,6 +37,8 @@ pub(crate) struct Painting<'a> {
     pub(crate) colors: &'a Colors<'a>,
     /// Half the width (sub-pixels) of the wireframe's lines; 0: none.
     pub(crate) wire: f32,
+    /// What can stop it.
+    pub(crate) watch: &'a Watch,
 }
 
 impl Painting<'_> {
@@ -220,6 +222,9 @@ pub(crate) fn drawn<'a>(
         let mut bins = Bins::default();
         let mut refined = PatchBlock::default();
         for &block in blocks {
+            if painting.watch.is_stopped() {
+                break;
+            }
             refinement.patch_block(block, &mut refined);
             let first = vertices.vertices.len() as u32;
             let made = refined.vertices.iter();

@@ -36,6 +36,6 @@ mod triangle;
 
 pub use markers::SceneMarkers;
 pub use meshes::SceneMesh;
-pub use picture::{Cost, PictureError, draw};
+pub use picture::{Cost, PictureError, bands, draw};
 pub use recolor::{StaticPicture, draw_static};
 pub use scene::Scene;

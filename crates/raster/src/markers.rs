@@ -67,7 +67,8 @@ impl SceneMarkers {
         let corners = &shapes.corners[range.start as usize..range.end as usize];
         let mut vertices = Vertices::default();
         let mut bins = Bins::default();
-        for (point, marker) in (0..).zip(markers) {
+        let going_on = markers.iter().take_while(|_| !painting.watch.is_stopped());
+        for (point, marker) in (0..).zip(going_on) {
             let center = (marker.position - projection.eye).as_vec3();
             let depth = (-center.dot(projection.axes[2])).max(projection.near);
             let radius = sizes.radius.max(sizes.least * depth);

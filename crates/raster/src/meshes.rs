@@ -70,6 +70,9 @@ impl SceneMesh {
         let pieces = parts.map(|(part, triangles)| {
             let mut vertices = Vertices::default();
             let mut bins = Bins::default();
+            if painting.watch.is_stopped() {
+                return bins.finished(vertices, painting.grid.len());
+            }
             for (index, &corners) in triangles.iter().enumerate() {
                 let first = vertices.vertices.len() as u32;
                 let made = corners.map(on_grid);

@@ -3,6 +3,7 @@
 //! Theory: McGuire, Mara & Luebke, Scalable ambient obscurance, HPG 2012.
 
 use glam::{Vec2, Vec3};
+use neurotess_picture::Watch;
 use rayon::prelude::*;
 
 use crate::grid::{Grid, IN_TILE, TILE};
@@ -45,10 +46,11 @@ pub(crate) struct Occlusion<'a> {
     pub(crate) tiles: &'a [Option<LitTile>],
     pub(crate) radius: f32,
     pub(crate) most: f32,
+    pub(crate) watch: &'a Watch,
 }
 
 impl Occlusion<'_> {
-    /// Shares of light.
+    /// Shares of light; if it is stopped, not of all tiles.
     pub(crate) fn shares(&self) -> Shares {
         // Where samples are taken, by the turn of the spiral.
         let taps: Vec<[Vec2; TAPS]> = (0..16)
@@ -69,7 +71,10 @@ impl Occlusion<'_> {
     fn by_tile(&self, of: impl Fn(usize, &LitTile) -> Vec<f32> + Sync) -> Shares {
         let tiles = self.tiles.par_iter().enumerate();
         tiles
-            .map(|(tile, lit)| lit.as_ref().map(|lit| of(tile, lit)))
+            .map(|(tile, lit)| {
+                let lit = lit.as_ref().filter(|_| !self.watch.is_stopped());
+                lit.map(|lit| of(tile, lit))
+            })
             .collect()
     }
 

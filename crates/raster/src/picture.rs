@@ -171,6 +171,11 @@ impl Setup {
     }
 }
 
+/// Number of bands of a picture.
+pub fn bands(view: &Viewpoint, options: &PictureOptions) -> usize {
+    Setup::new(view, options).bands().len()
+}
+
 /// Draws a picture and calls `take` with its bands from the top: the first row of each, and its pixels.
 ///
 /// The bytes are the same on every machine and with any number of threads.
@@ -242,6 +247,7 @@ impl Painter<'_> {
             look,
             colors: &colors,
             wire: 0.5 * look.wire * setup.scale as f32,
+            watch: self.watch,
         };
         let mut tiles: Vec<Option<Tile<H, S>>> = (0..grid.len()).map(|_| None).collect();
         let shared = shared_colors(scene, &colors);
@@ -272,17 +278,17 @@ impl Painter<'_> {
             if self.watch.is_stopped() {
                 return None;
             }
-            rasterize(&mut tiles, grid, &drawn);
+            rasterize(&mut tiles, grid, &drawn, self.watch);
         }
         if let Some(markers) = scene.markers {
-            rasterize(&mut tiles, grid, &markers.drawn(&painting));
+            rasterize(&mut tiles, grid, &markers.drawn(&painting), self.watch);
         }
         for (mesh, number) in scene.meshes.iter().zip(0..) {
             if self.watch.is_stopped() {
                 return None;
             }
             let drawn: Vec<Drawn<'_>> = mesh.drawn(number, &painting).into_iter().collect();
-            rasterize(&mut tiles, grid, &drawn);
+            rasterize(&mut tiles, grid, &drawn, self.watch);
         }
         (!self.watch.is_stopped()).then_some(tiles)
     }
@@ -296,11 +302,12 @@ impl Painter<'_> {
             tiles: lit,
             radius,
             most,
+            watch: self.watch,
         };
         Some(occlusion.shares())
     }
 
-    /// Samples, lit.
+    /// Samples, lit; if it is stopped, not of all tiles.
     pub(crate) fn lit<H: Held, const S: usize>(
         &self,
         grid: &Grid,
@@ -310,7 +317,7 @@ impl Painter<'_> {
             projection, lights, ..
         } = self.setup;
         let lit = |(index, tile): (usize, &Option<Tile<H, S>>)| {
-            let tile = tile.as_ref()?;
+            let tile = tile.as_ref().filter(|_| !self.watch.is_stopped())?;
             let corner = grid.corner(index);
             let mut made = LitTile::new();
             for place in 0..IN_TILE {
@@ -362,14 +369,15 @@ impl Painter<'_> {
         cost.sample_bytes = cost.sample_bytes.max(held * bytes as u64);
         let lit = self.lit(grid, &tiles);
         drop(tiles);
+        let shares = self.shares(grid, &lit);
         if self.watch.is_stopped() {
             return None;
         }
-        let shares = self.shares(grid, &lit);
-        Some(self.gathered(band, &lit, shares.as_ref()))
+        let image = self.gathered(band, &lit, shares.as_ref());
+        (!self.watch.is_stopped()).then_some(image)
     }
 
-    /// Pixels of sub-pixels.
+    /// Pixels of sub-pixels; if it is stopped, not of all.
     fn gathered(&self, band: &Band, lit: &[Option<LitTile>], shares: Option<&Shares>) -> Image {
         let Setup { size, scale, .. } = *self.setup;
         let background = self.options.background;
@@ -380,6 +388,9 @@ impl Painter<'_> {
         let share = 1.0 / (scale * scale) as f32;
         let rows = image.pixels.par_chunks_mut(row_bytes);
         let gather = |(row, y): (&mut [u8], u32)| {
+            if self.watch.is_stopped() {
+                return;
+            }
             let mut sums = vec![[0.0_f32; 4]; size[0] as usize];
             for sub_y in y * scale..(y + 1) * scale {
                 band.grid

@@ -129,6 +129,9 @@ fn weights<const S: usize>(painter: &Painter<'_>, band: &Band) -> Option<Weights
     let lit = painter.lit(grid, &tiles);
     let shares = painter.shares(grid, &lit);
     drop(lit);
+    if painter.watch.is_stopped() {
+        return None;
+    }
     let width = painter.setup.size[0];
     let rows: Vec<Collected> = band
         .rows
@@ -141,6 +144,9 @@ fn weights<const S: usize>(painter: &Painter<'_>, band: &Band) -> Option<Weights
                 weighed: Vec::new(),
             };
             for x in 0..width {
+                if painter.watch.is_stopped() {
+                    break;
+                }
                 let gathering = Gathering {
                     painter,
                     band,
@@ -158,6 +164,9 @@ fn weights<const S: usize>(painter: &Painter<'_>, band: &Band) -> Option<Weights
             row
         })
         .collect();
+    if painter.watch.is_stopped() {
+        return None;
+    }
     let mut weights = Weights::new([width, band.rows.len() as u32]);
     for (row, y) in rows.iter().zip(0..) {
         weights.add([0, y], row);

@@ -1,5 +1,6 @@
 //! From triangles to samples.
 
+use neurotess_picture::Watch;
 use rayon::prelude::*;
 
 use crate::bins::{Piece, Triangle, Vertex};
@@ -53,15 +54,19 @@ pub(crate) struct Drawn<'a> {
     pub(crate) perspective: bool,
 }
 
-/// Draws surfaces into the tiles of a grid. Tiles get memory when a triangle first meets them.
+/// Draws surfaces into the tiles of a grid, until it is stopped. Tiles get memory when a triangle first meets them.
 pub(crate) fn rasterize<H: Held, const S: usize>(
     tiles: &mut [Option<Tile<H, S>>],
     grid: &Grid,
     surfaces: &[Drawn<'_>],
+    watch: &Watch,
 ) {
     tiles.par_iter_mut().enumerate().for_each(|(index, slot)| {
         let corner = grid.corner(index);
         for surface in surfaces {
+            if watch.is_stopped() {
+                return;
+            }
             for piece in &surface.pieces {
                 for triangle in piece.of_tile(index as u32) {
                     let tile = slot.get_or_insert_with(Tile::new);
