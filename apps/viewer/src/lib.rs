@@ -22,7 +22,7 @@ pub use model::{
     changes, command, crossings, document, markers, measuring, partners, placing, playback, plots,
     save, session, settings, sources, split, state, traces, view,
 };
-pub use scene::headless::{SessionPicture, draw_session};
+pub use scene::headless::{ChooseAdapter, SessionPicture, draw_session};
 pub use scene::stage::Stage;
 pub use ui::app::{CommandListener, Viewer};
 pub use ui::window::{Options, ViewError, run, wgpu_setup};

@@ -79,3 +79,8 @@ impl Setup {
             .collect()
     }
 }
+
+/// Number of bands of a picture.
+pub fn bands(view: &Viewpoint, options: &PictureOptions) -> usize {
+    Setup::new(view, options).bands().len()
+}

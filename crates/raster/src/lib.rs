@@ -39,6 +39,7 @@ mod select;
 mod sheet;
 mod triangle;
 
+pub use bands::bands;
 pub use cost::{Cost, PictureError};
 pub use markers::SceneMarkers;
 pub use meshes::SceneMesh;

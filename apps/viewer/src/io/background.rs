@@ -5,6 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPoolBuilder;
+
 /// Time between looks at whether threads have ended.
 const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
@@ -18,6 +20,15 @@ fn threads() -> MutexGuard<'static, Vec<JoinHandle<()>>> {
 pub(crate) fn spawn(work: impl FnOnce() + Send + 'static) {
     join_ended();
     threads().push(std::thread::spawn(work));
+}
+
+/// Runs `work` and its parallel parts on threads apart from those that the window's own parallel parts would wait for.
+pub(crate) fn apart<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(work),
+        // There are no more threads to be had.
+        Err(_) => work(),
+    }
 }
 
 /// Waits until no thread runs that the window has started, `limit` at most. Returns whether none does.

@@ -84,6 +84,16 @@ impl SceneContent {
 }
 
 impl SceneContent {
+    /// Coarse patches of all instances that show.
+    pub(crate) fn patches(&self) -> u64 {
+        let shown = self.instances.iter().filter(|instance| !instance.hidden);
+        let patches = shown.filter_map(|shown| {
+            let source = self.sources.get(shown.source)?;
+            Some(source.generated.mesh.patches.len() as u64)
+        });
+        patches.sum()
+    }
+
     /// Takes the colors of other content that has the same meshes and color keys.
     pub(crate) fn recolor(&mut self, other: Self) {
         (self.table, self.legend) = (other.table, other.legend);
@@ -183,7 +193,22 @@ pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneIn
     instances.collect()
 }
 
-/// Uploads all sources, or if `empty` none of their points; the ids of templates are their indices.
+/// All sources with their color keys; the ids of templates are their indices. `instead`: the mesh of each, if not its own.
+pub(crate) fn template_list<'a>(
+    sources: &'a [SceneTemplate],
+    coloring: &'a Coloring,
+    instead: Option<&'a CoarseMesh>,
+) -> Vec<Template<'a>> {
+    let keyed = sources.iter().zip_eq(&coloring.color_keys);
+    let template = |(source, color_keys): (&'a SceneTemplate, &'a Vec<u32>)| Template {
+        mesh: instead.unwrap_or(&source.generated.mesh),
+        color_keys,
+        values: &[],
+    };
+    keyed.map(template).collect()
+}
+
+/// Uploads all sources, or if `empty` none of their points.
 pub(crate) fn templates(
     gpu: &Gpu,
     sources: &[SceneTemplate],
@@ -191,15 +216,7 @@ pub(crate) fn templates(
     empty: bool,
 ) -> Result<Templates, DeviceError> {
     let none = CoarseMesh::default();
-    let list: Vec<Template<'_>> = sources
-        .iter()
-        .zip_eq(&coloring.color_keys)
-        .map(|(source, color_keys)| Template {
-            mesh: if empty { &none } else { &source.generated.mesh },
-            color_keys,
-            values: &[],
-        })
-        .collect();
+    let list = template_list(sources, coloring, empty.then_some(&none));
     let mut templates = Templates::new();
     if !list.is_empty() {
         templates.add(gpu, &list)?;
@@ -207,7 +224,7 @@ pub(crate) fn templates(
     Ok(templates)
 }
 
-/// Instances of templates that were uploaded.
+/// Instances of templates, without states.
 pub(crate) fn device_instances(instances: &[SceneInstance]) -> Vec<Instance> {
     let instance = |s: &SceneInstance| Instance {
         placement: s.placement,

@@ -1,10 +1,11 @@
 //! Films that are saved from a fixed view.
 
 use neurotess::coloring::Film;
-use neurotess::render::{Gpu, Image, KeyColors, StaticPicture};
+use neurotess::picture::{Image, KeyColors};
 
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
+use crate::scene::painter::Recolored;
 use crate::scene::still_scene::StillScene;
 
 /// Whether the pictures of a film differ in the values of a recording only.
@@ -17,7 +18,7 @@ pub(super) fn is_static(scene: &StillScene, frames: &[FilmFrame], options: &Pict
 }
 
 /// A picture with the film of the scene's recording; none without one.
-pub(super) fn film(scene: &StillScene, picture: StaticPicture) -> Option<(Film, StaticPicture)> {
+pub(super) fn film(scene: &StillScene, picture: Recolored) -> Option<(Film, Recolored)> {
     let (recording, _) = scene.content.recording.as_ref()?;
     let decay = scene.look.decay;
     let film = Film::new(picture.keys(), recording, scene.range(), decay);
@@ -26,8 +27,7 @@ pub(super) fn film(scene: &StillScene, picture: StaticPicture) -> Option<(Film, 
 
 /// The picture at a time (ms) of the scene's recording; none without these.
 pub(super) fn picture(
-    (film, picture): &(Film, StaticPicture),
-    gpu: &Gpu,
+    (film, picture): &(Film, Recolored),
     scene: &StillScene,
     time: Option<f64>,
 ) -> Result<Option<Image>, String> {
@@ -41,7 +41,5 @@ pub(super) fn picture(
         states: &scene.states,
         values: Some(&values),
     };
-    let recolored = picture.recolor(gpu, &colors);
-    let image = recolored.and_then(|()| picture.image(gpu));
-    image.map(Some).map_err(|e| e.to_string())
+    picture.image(&colors).map(Some)
 }

@@ -22,6 +22,9 @@ use crate::scene::meshes;
 use crate::scene::pictures::{StillScene, pictures};
 use crate::scene::templates;
 
+/// The adapter that draws a scene of so many coarse patches; none: the processor does. Errors are messages.
+pub type ChooseAdapter<'a> = &'a dyn Fn(u64) -> Result<Option<Arc<Gpu>>, String>;
+
 /// The result of drawing a session: what is in the picture, and what failed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SessionPicture {
@@ -32,7 +35,7 @@ pub struct SessionPicture {
 }
 
 /// Draws a session as the window would save it, from its own view or from the saved `view` of this
-/// name. `without_caches`: neither read nor write the cache of its circuit.
+/// name. `choose`: who draws it. `without_caches`: neither read nor write the cache of its circuit.
 ///
 /// # Errors
 /// A message that says what is wrong with the session, the adapter or the file to write, and what
@@ -41,7 +44,7 @@ pub fn draw_session(
     file: &Path,
     picture: &PictureFile,
     view: Option<&str>,
-    adapter: Option<&str>,
+    choose: ChooseAdapter<'_>,
     without_caches: bool,
 ) -> Result<SessionPicture, String> {
     let session = Session::read(file).map_err(|e| e.of(file))?;
@@ -99,8 +102,8 @@ pub fn draw_session(
         state.set_mesh(file, read);
     }
     read_markers(&mut state, &mut drawn);
-    let gpu = Gpu::open(adapter).map_err(|e| e.to_string())?;
-    let still_scene = Arc::new(still_scene(Arc::new(gpu), &state, &mut drawn));
+    let mut still_scene = still_scene(&state, &mut drawn);
+    still_scene.gpu = choose(still_scene.content.patches())?;
     let film_frame = FilmFrame {
         view,
         time: Some(session.playback.time),
@@ -131,7 +134,8 @@ fn read_markers(state: &mut State, drawn: &mut SessionPicture) {
     drawn.failures.extend(failures);
 }
 
-fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> StillScene {
+/// The scene, without an adapter.
+fn still_scene(state: &State, drawn: &mut SessionPicture) -> StillScene {
     let sources = templates::templates(state);
     let request = ColorRequest::new(state, &sources);
     let sources = request.meshed(sources, &[]);
@@ -148,8 +152,7 @@ fn still_scene(gpu: Arc<Gpu>, state: &State, drawn: &mut SessionPicture) -> Stil
     let mut meshes = meshes::shown(state);
     meshes::add_to(&mut meshes, &mut content);
     StillScene {
-        gpu,
-        shared: false,
+        gpu: None,
         content,
         markers: markers.map(Arc::new),
         form: state.document.markers.form(),

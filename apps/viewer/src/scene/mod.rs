@@ -9,6 +9,7 @@ pub(crate) mod headless;
 pub(crate) mod locate;
 mod markers;
 mod meshes;
+mod painter;
 pub(crate) mod picks;
 pub(crate) mod pictures;
 pub(crate) mod stage;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use neurotess::render::color::ColorTable;
 use neurotess::render::overlay::{Annotations, Legend, Overlay, OverlayOptions};
-use neurotess::render::{BoundingSphere, Camera, Gpu, Look, MarkerShape};
+use neurotess::render::{BoundingSphere, Camera, Gpu, Look, MarkerSettings, MarkerShape};
 
 use crate::model::document;
 use crate::model::film::FilmFrame;
@@ -14,14 +14,13 @@ use crate::model::save::PictureFile;
 use crate::scene::colors::color_scheme;
 use crate::scene::content::SceneContent;
 use crate::scene::dimensions::annotations;
-use crate::scene::markers::SceneMarkers;
+use crate::scene::markers::{SceneMarkers, settings};
 use crate::scene::meshes::SceneMesh;
 
 /// All that pictures are drawn from, for another thread.
 pub(crate) struct StillScene {
-    pub(crate) gpu: Arc<Gpu>,
-    /// Whether a window draws with the same device.
-    pub(crate) shared: bool,
+    /// The adapter that draws; none: the processor does.
+    pub(crate) gpu: Option<Arc<Gpu>>,
     pub(crate) content: SceneContent,
     pub(crate) look: document::Look,
     pub(crate) states: Vec<u32>,
@@ -39,6 +38,14 @@ pub(crate) struct StillScene {
 }
 
 impl StillScene {
+    /// What is counted while its pictures are drawn.
+    pub(crate) fn steps(&self) -> &'static str {
+        match self.gpu {
+            Some(_) => "tiles",
+            None => "bands",
+        }
+    }
+
     /// Color table of a picture, at its time of the recording if there is one.
     pub(super) fn table(&self, time: Option<f64>) -> Result<ColorTable, String> {
         let table = &self.content.table;
@@ -74,6 +81,12 @@ impl StillScene {
         let instances = self.content.instances.iter();
         let shown = instances.filter(|instance| !instance.hidden).count();
         Look::width_at(self.look.least_width_of(shown), size)
+    }
+
+    /// How markers are drawn, as `neurotess render` does. `sub_pixels`: along a pixel's side.
+    pub(super) fn marker_settings(&self, sub_pixels: u32) -> MarkerSettings {
+        let most = MarkerSettings::default().most_triangles;
+        settings(self.form, f64::from(sub_pixels), None, most)
     }
 
     /// Ends of the scale of the recording.

@@ -18,6 +18,7 @@ mod rebuilds;
 mod recordings;
 mod saving;
 mod screen;
+mod sessions;
 mod spines;
 mod static_mode;
 mod synapses;

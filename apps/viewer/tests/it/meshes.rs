@@ -165,7 +165,8 @@ fn sessions_and_saved_pictures_have_them() {
     };
     run(&mut window, Command::SavePicture(options("window.png")));
     let [with, without] = ["with.png", "without.png"].map(|name| {
-        let drawn = draw_session(&session, &options(name), None, None, true).expect("drawn");
+        let drawn =
+            draw_session(&session, &options(name), None, &|_| Ok(None), true).expect("drawn");
         assert_eq!(drawn.failures, []);
         let picture = fs::read(folder.path().join(name)).expect("a picture");
         // The second time without the mesh.

@@ -27,9 +27,10 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The tiles that the line at the bottom says are done, and all.
-fn tiles(window: &Window) -> Option<[usize; 2]> {
-    let line = window.query_by_label_contains(" tiles")?;
+/// The bands, or the adapter's tiles, that the line at the bottom says are done, and all.
+fn bands(window: &Window) -> Option<[usize; 2]> {
+    let mut names = [" bands", " tiles"].into_iter();
+    let line = names.find_map(|name| window.query_by_label_contains(name))?;
     let node = line.accesskit_node();
     let text = node.value().or(node.label())?;
     let numbers = text.split(' ').filter_map(|word| word.parse().ok());
@@ -59,7 +60,7 @@ fn stop(window: &mut Window, at: &str) {
 }
 
 #[neurotess_testing::test(needs(gpu))]
-fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
+fn a_picture_says_its_bands_lets_a_session_be_saved_and_stops() {
     let mut window = with_samples(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");
     let picture = PictureFile {
@@ -70,10 +71,10 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
         replace: false,
     };
     state(&mut window).run(Command::SavePicture(picture.clone()));
-    wait(&mut window, "the first tile", |window| {
-        tiles(window).is_some_and(|[done, _]| done > 0)
+    wait(&mut window, "the first band", |window| {
+        bands(window).is_some_and(|[done, _]| done > 0)
     });
-    let [before, all] = tiles(&window).expect("said");
+    let [before, all] = bands(&window).expect("said");
     assert!(all > 20, "{all}");
     // The window goes on.
     let turned = state(&mut window).view.orbited(0.3, 0.1, glam::DVec3::Y);
@@ -85,21 +86,21 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     state(&mut window).run(Command::SaveSession(session));
     window.step();
     assert!(names(folder.path()).contains(&"meanwhile.neurotess".to_owned()));
-    let [done, _] = tiles(&window).expect("still drawing");
+    let [done, _] = bands(&window).expect("still drawing");
     assert!(done < all && done >= before);
-    stop(&mut window, "in a tile");
+    stop(&mut window, "in a band");
     assert_eq!(
         names(folder.path()),
         ["meanwhile.neurotess"],
         "nothing half written"
     );
-    // Before the first tile, while the device and the scene are made ready.
+    // Before the first band, while the scene is made ready.
     for wait in [0, 30, 150] {
         let again = picture.clone();
         state(&mut window).run(Command::SavePicture(again));
         window.step();
         std::thread::sleep(Duration::from_millis(wait));
-        stop(&mut window, "before the first tile");
+        stop(&mut window, "before the first band");
         assert_eq!(names(folder.path()), ["meanwhile.neurotess"]);
     }
     // And the next one is whole.
@@ -114,7 +115,7 @@ fn a_picture_says_its_tiles_lets_a_session_be_saved_and_stops() {
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
 }
 
-#[neurotess_testing::test(needs(neurotess_testing::full, gpu))]
+#[neurotess_testing::test(needs(gpu))]
 fn saved_pictures_have_the_axes_that_show() {
     let mut window = undrawn(&[Kind::Star]);
     let folder = tempfile::tempdir().expect("a folder");

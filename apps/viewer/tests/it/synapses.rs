@@ -493,8 +493,14 @@ fn sessions_and_saved_pictures_have_synapses_and_points() {
     run(&mut window, Command::SaveSession(at("mine.neurotess")));
     let text = fs::read_to_string(at("mine.neurotess")).expect("written");
     assert!(text.contains("points = \"spines.csv\""), "{text}");
-    let drawn =
-        draw_session(&at("mine.neurotess"), &save("drawn.png"), None, None, false).expect("drawn");
+    let drawn = draw_session(
+        &at("mine.neurotess"),
+        &save("drawn.png"),
+        None,
+        &|_| Ok(None),
+        false,
+    )
+    .expect("drawn");
     assert!(drawn.failures.is_empty(), "{:?}", drawn.failures);
     let bytes = |name: &str| fs::read(at(name)).expect("a picture");
     assert!(bytes("saved.png") == bytes("drawn.png"), "the same picture");

@@ -92,20 +92,6 @@ impl StillRenderer {
         self.watch = Some(watch);
     }
 
-    /// Makes the pipelines of a picture, which it then need not make.
-    ///
-    /// # Errors
-    /// The device reports an error.
-    pub fn make_pipelines(
-        &mut self,
-        gpu: &Gpu,
-        source: &dyn VertexSource,
-        table: &ColorTable,
-        options: &PictureOptions,
-    ) -> Result<(), DeviceError> {
-        self.renderer(gpu, source, table, options).map(|_| ())
-    }
-
     fn renderer(
         &mut self,
         gpu: &Gpu,

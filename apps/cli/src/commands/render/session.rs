@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::RenderArgs;
 #[cfg(feature = "view")]
-use super::stats;
+use super::{painter, stats};
 #[cfg(feature = "view")]
 use crate::report::{Failure, count};
 use crate::report::{Reporter, usage};
@@ -28,11 +28,12 @@ pub(super) fn draw(
         transparent: args.transparent,
         replace: args.force,
     };
+    let wanted = painter::wanted(args)?;
     let drawn = neurotess_viewer::draw_session(
         session,
         &picture,
         args.saved_view.as_deref(),
-        args.gpu.adapter.as_deref(),
+        &|patches| wanted.device(patches, &painter::open),
         args.cache.no_cache,
     );
     let drawn = drawn.map_err(anyhow::Error::msg)?;

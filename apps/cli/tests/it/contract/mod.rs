@@ -22,6 +22,7 @@ mod parts;
 mod render;
 mod resume;
 mod sections;
+mod sessions;
 mod snudda;
 mod streams;
 mod synth;

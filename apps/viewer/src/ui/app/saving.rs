@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Viewer;
+use crate::io::background::apart;
 use crate::io::save::{self, MeshPlan, SeenFrom, video};
 use crate::io::task::Progress;
 use crate::model::document::Neuron;
@@ -60,14 +61,15 @@ impl Viewer {
             }
             SaveRequest::Picture(options) => {
                 self.state.settings.picture_size = options.size;
-                let still_scene = Arc::new(self.still_scene());
+                let still_scene = self.still_scene();
                 let film_frame = FilmFrame {
                     view: self.state.view,
                     time: Some(self.state.playback.pace.time),
                 };
-                let progress = Progress::new("drawing the picture", "tiles", 0);
+                let progress = Progress::new("drawing the picture", still_scene.steps(), 0);
                 self.worker.save(progress, move |progress| {
-                    let files = pictures(&still_scene, &[film_frame], &options, progress)?;
+                    let files =
+                        apart(|| pictures(&still_scene, &[film_frame], &options, progress))?;
                     let file = files.first().map(|f| f.display().to_string());
                     Ok(format!("Saved {}", file.unwrap_or_default()).into())
                 });
@@ -102,9 +104,10 @@ impl Viewer {
             self.state.problem("film", why);
             return;
         }
-        let still_scene = Arc::new(self.still_scene());
+        let still_scene = self.still_scene();
+        let progress = Progress::new("drawing the film", still_scene.steps(), 0);
         let work = move |progress: &Progress| {
-            let files = pictures(&still_scene, &film_frames, &film.picture, progress)?;
+            let files = apart(|| pictures(&still_scene, &film_frames, &film.picture, progress))?;
             let (count, first) = (files.len(), files.first().cloned().unwrap_or_default());
             let also = match film.video && count > 1 {
                 true => {
@@ -115,7 +118,6 @@ impl Viewer {
             };
             Ok(format!("Saved {count} pictures from {}{also}", first.display()).into())
         };
-        let progress = Progress::new("drawing the film", "tiles", 0);
         self.worker.save(progress, work);
     }
 
@@ -155,9 +157,10 @@ impl Viewer {
 
     fn still_scene(&self) -> StillScene {
         let (content, markers, meshes) = self.stage.saved_content();
+        let gpu = self.stage.gpu();
         StillScene {
-            gpu: self.stage.gpu().clone(),
-            shared: true,
+            // What draws by the processor takes several times as long as the processor itself.
+            gpu: (!gpu.adapter.software).then(|| Arc::clone(gpu)),
             content,
             markers,
             form: self.state.document.markers.form(),

@@ -95,7 +95,7 @@ pub(crate) type Take<'a> = &'a mut dyn FnMut(u32, Image) -> anyhow::Result<()>;
 ///
 /// # Errors
 /// Wrong usage: what only adapters draw.
-fn wanted(args: &RenderArgs) -> anyhow::Result<Wanted> {
+pub(super) fn wanted(args: &RenderArgs) -> anyhow::Result<Wanted> {
     let variable = || std::env::var(VARIABLE).ok().filter(|name| !name.is_empty());
     let name = args.gpu.adapter.clone().or_else(variable);
     let by_adapters = matches!(mode(args)?, LodMode::Exploration | LodMode::Prerefined);
@@ -112,10 +112,29 @@ fn wanted(args: &RenderArgs) -> anyhow::Result<Wanted> {
     }
 }
 
-enum Wanted {
+/// What is to draw.
+pub(super) enum Wanted {
     Processor,
     Adapter(Option<String>),
     Whatever,
+}
+
+impl Wanted {
+    /// The adapter that draws pictures of so many coarse patches together; none if the processor does.
+    ///
+    /// # Errors
+    /// A message: there is no adapter of that name, or none that can draw.
+    pub(super) fn device(
+        &self,
+        patches: u64,
+        open: Open<'_>,
+    ) -> Result<Option<Arc<Device>>, String> {
+        Ok(match self {
+            Self::Processor => None,
+            Self::Adapter(name) => Some(open(name.as_deref())?),
+            Self::Whatever => worth(patches, open),
+        })
+    }
 }
 
 /// Opens the hardware adapter that is worth it for so many patches, if there is one.
@@ -143,11 +162,9 @@ impl Painter {
         open: Open<'_>,
         job: &RenderJob<'_>,
     ) -> anyhow::Result<Option<Arc<Device>>> {
-        Ok(match wanted(job.args)? {
-            Wanted::Processor => None,
-            Wanted::Adapter(name) => Some(open(name.as_deref()).map_err(anyhow::Error::msg)?),
-            Wanted::Whatever => worth(job.shown().patches() * job.cameras.len() as u64, open),
-        })
+        let patches = job.shown().patches() * job.cameras.len() as u64;
+        let device = wanted(job.args)?.device(patches, open);
+        device.map_err(anyhow::Error::msg)
     }
 
     /// For the pictures of a job: cells, markers and `meshes` beside them.
