@@ -1,4 +1,4 @@
-"""Times a picture of one cell, 1280 × 960, beside octarine, in one run and with the same Vulkan driver.
+"""Times a picture of one cell, 1280 × 960, by the processor, beside octarine, which draws by a Vulkan driver.
 
 Run it in an environment with the package (a release build: `cargo xtask wheel`) and octarine3d:
 

@@ -45,7 +45,7 @@ pub const WITHOUT_NEURITES: u32 = 4;
 /// State of an instance: its soma is not drawn.
 pub const WITHOUT_SOMA: u32 = 8;
 /// State of an instance: drafts draw an outline around it, see
-/// [`ProgressiveRenderer::draft`](crate::ProgressiveRenderer::draft).
+/// `ProgressiveRenderer::draft` of `neurotess-render`.
 pub const OUTLINED: u32 = 16;
 
 /// How surfaces are lit.

@@ -13,7 +13,7 @@ pub enum PictureError<E> {
     /// The function that takes the bands returned an error.
     #[error("{0}")]
     Sink(E),
-    /// It was stopped by a [`Watch`].
+    /// It was stopped by a [`Watch`](neurotess_picture::Watch).
     #[error("stopped")]
     Stopped,
 }

@@ -13,7 +13,7 @@ pub const SHEET_DEPTH: f32 = 24.0;
 pub struct MeshLook {
     /// What its color is looked up by: see [`ColorTable`](crate::color::ColorTable). A category, since it
     /// belongs to no instance that has values. Meshes with keys of their own
-    /// ([`MeshGeometry::with_keys`]) have those instead.
+    /// (`MeshGeometry::with_keys`, `SceneMesh::new`) have those instead.
     pub color_key: u32,
     /// Share of what lies behind that each of its layers hides, 0 to 1.
     pub opacity: f32,

@@ -49,7 +49,7 @@ pub struct KeyColors<'a> {
     pub table: &'a ColorTable,
     /// States of instances: of these, [`HIGHLIGHTED`](crate::state::HIGHLIGHTED) changes colors.
     pub states: &'a [u32],
-    /// A value for each of [`StaticPicture::keys`], 0 to 1 or NaN: the color keys that are not
+    /// A value for each of the picture's keys, 0 to 1 or NaN: the color keys that are not
     /// categories are then not looked up in the table's values.
     pub values: Option<&'a [f32]>,
 }
