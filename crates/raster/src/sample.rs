@@ -8,7 +8,7 @@ use glam::Vec3;
 pub(crate) struct Surface(u64);
 
 /// Bits of each of a normal's two octahedral coordinates (Meyer et al., On floating-point normal vectors, 2010): accurate
-/// to 0.02°.
+/// to 0.03°.
 const PLACE: u32 = 13;
 /// Largest of such a coordinate.
 const MOST: f32 = ((1 << (PLACE - 1)) - 1) as f32;
@@ -100,7 +100,8 @@ mod tests {
             let color = [0.2, (t / 500.0).min(1.0), 1.0];
             let [r, g, b] = color;
             let held = Surface::new(normal * 20_000.0, [r, g, b, t / 500.0], t / 500.0);
-            assert!(held.normal().distance(normal) < 4e-4, "{normal}");
+            // Half a step of both coordinates, 1.2e-4 each, up to three times as far on the sphere.
+            assert!(held.normal().distance(normal) < 6e-4, "{normal}");
             for (a, b) in held.color().into_iter().zip(color) {
                 assert!((a.sqrt() - b.sqrt()).abs() < 0.5 / 254.0, "{a} {b}");
             }
