@@ -21,7 +21,7 @@ use processor::Processor;
 
 use crate::scene::still_scene::StillScene;
 
-pub(super) use processor::Beside;
+pub(super) use processor::{Beside, of_view};
 
 /// What draws the pictures of a scene.
 pub(super) enum Painter<'a> {
@@ -57,7 +57,7 @@ impl<'a> Painter<'a> {
     ) -> Result<Self, String> {
         Ok(match &scene.gpu {
             Some(gpu) => Self::Adapter(Box::new(Adapter::new(gpu, scene, options, watch)?)),
-            None => Self::Processor(Processor::new(scene, beside, options, watch)?),
+            None => Self::Processor(Processor::new(scene, beside, refined(options), watch)?),
         })
     }
 

@@ -3,10 +3,12 @@
 use itertools::Itertools;
 use neurotess::mesh::SurfaceMesh;
 use neurotess::picture::color::ColorTable;
-use neurotess::picture::{PictureOptions, Viewpoint, Watch};
+use neurotess::picture::{
+    AdaptiveSettings, Image, MarkerSettings, PictureOptions, Viewpoint, Watch,
+};
 use neurotess::raster::{self, PictureError};
 
-use super::{Recolored, Take, Unmade, refined};
+use super::{Recolored, Take, Unmade};
 use crate::scene::content;
 use crate::scene::meshes::SceneMesh;
 use crate::scene::still_scene::StillScene;
@@ -25,16 +27,17 @@ impl Beside {
             return Self::default();
         }
         let sub_pixels = options.sub_pixels(options.samples_in_sub_pixel());
+        Self::with_markers(scene, scene.marker_settings(sub_pixels))
+    }
+
+    fn with_markers(scene: &StillScene, settings: MarkerSettings) -> Self {
         let markers = scene.markers.as_ref();
         let markers = markers.filter(|markers| !markers.markers.is_empty());
         let mesh = |mesh: &SceneMesh| {
             raster::SceneMesh::new(SurfaceMesh::clone(&mesh.surface), &[], mesh.look)
         };
         Self {
-            markers: markers.map(|markers| {
-                let settings = scene.marker_settings(sub_pixels);
-                raster::SceneMarkers::new(&markers.markers, settings)
-            }),
+            markers: markers.map(|markers| raster::SceneMarkers::new(&markers.markers, settings)),
             meshes: scene.meshes.iter().map(mesh).collect(),
         }
     }
@@ -50,7 +53,7 @@ impl<'a> Processor<'a> {
     pub(super) fn new(
         scene: &'a StillScene,
         beside: &'a Beside,
-        options: &PictureOptions,
+        refined: AdaptiveSettings,
         watch: Watch,
     ) -> Result<Self, String> {
         let content = &scene.content;
@@ -59,7 +62,7 @@ impl<'a> Processor<'a> {
         for (instance, &state) in instances.iter_mut().zip_eq(&scene.states) {
             instance.state = state;
         }
-        let made = raster::Scene::new(templates, instances, refined(options));
+        let made = raster::Scene::new(templates, instances, refined);
         let made = made.map_err(|e| e.to_string())?;
         let made = made.with_markers(beside.markers.as_ref());
         Ok(Self {
@@ -91,6 +94,37 @@ impl<'a> Processor<'a> {
         let drawn = raster::draw_static(&self.scene, view, table, options, &self.watch);
         let (picture, _) = drawn.map_err(unmade)?;
         Ok(Some(Recolored::Processor(picture)))
+    }
+}
+
+/// The picture of a view in the window. `refined`, `markers`: how these are drawn.
+///
+/// # Errors
+/// A message: it was stopped, or the scene is not valid.
+pub(in crate::scene) fn of_view(
+    scene: &StillScene,
+    view: &Viewpoint,
+    options: &PictureOptions,
+    (refined, markers): (AdaptiveSettings, MarkerSettings),
+    watch: Watch,
+) -> Result<Image, String> {
+    let beside = Beside::with_markers(scene, markers);
+    let processor = Processor::new(scene, &beside, refined, watch)?;
+    let [width, height] = options.size;
+    let mut image = Image {
+        width,
+        height,
+        pixels: Vec::with_capacity(4 * width as usize * height as usize),
+    };
+    let mut take = |_: u32, band: Image| {
+        image.pixels.extend(band.pixels);
+        Ok(())
+    };
+    let drawn = processor.draw(view, &scene.content.table, options, &mut take);
+    match drawn {
+        Ok(()) => Ok(image),
+        Err(Unmade::Stopped) => Err("stopped".to_owned()),
+        Err(Unmade::Failed(why)) => Err(why),
     }
 }
 

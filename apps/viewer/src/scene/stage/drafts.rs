@@ -146,7 +146,13 @@ impl Stage {
         };
         self.progressive.set_outlines(&self.gpu, around, None);
         self.pointing.mask = None;
-        self.draw_draft(&inputs)?;
+        self.awaited = self.begins_without_draft(&inputs);
+        if self.awaited {
+            // Nothing moves yet, so nothing is waited for.
+            self.pace.moved = Instant::now().checked_sub(REST).unwrap_or(self.pace.moved);
+        } else {
+            self.draw_draft(&inputs)?;
+        }
         self.drawn = Some(inputs);
         self.legend = self.whole_legend();
         self.recorded.changed = false;
@@ -174,6 +180,7 @@ impl Stage {
             self.pace.moved = Instant::now();
         }
         self.pace.phase = RestPhase::Waits;
+        self.resting = None;
         self.progressive.stop();
     }
 

@@ -2,6 +2,7 @@
 //! picture at rest, and what is under the cursor. Nothing is drawn when nothing changes.
 
 mod building;
+mod by_processor;
 mod clamped;
 mod cost_model;
 mod drafts;
@@ -21,7 +22,7 @@ use egui_wgpu::RenderState;
 use neurotess::coloring::{ColorBy, coloring};
 use neurotess::render::overlay::Legend;
 use neurotess::render::{
-    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, ProgressiveRenderer, Scene,
+    Adaptive, AdaptiveSettings, Camera, Clip, DeviceError, Gpu, Image, ProgressiveRenderer, Scene,
     ViewParams,
 };
 
@@ -67,6 +68,10 @@ pub struct Stage {
     /// Values of the recording.
     recorded: RecordedValues,
     drawn: Option<PictureInputs>,
+    /// The picture at rest that the processor draws.
+    resting: Option<Task<Image>>,
+    /// Whether nothing of this scene shows until that is there.
+    awaited: bool,
     /// Whether the static picture is still to be colored anew.
     recolor_due: bool,
     /// Of the last draft: what its static picture depends on.
@@ -142,6 +147,8 @@ impl Stage {
             meshes: StageMeshes::default(),
             recorded: RecordedValues::default(),
             drawn: None,
+            resting: None,
+            awaited: false,
             recolor_due: false,
             shape: None,
             pointing: Pointing::default(),
@@ -228,24 +235,23 @@ impl Stage {
 
     /// Whether the picture, perhaps a draft, shows the recording's current frame.
     pub fn shows_frame(&self) -> bool {
-        !self.recorded.due && !self.recorded.changed && self.drawn.is_some()
+        !self.recorded.due && !self.recorded.changed && self.is_drawn()
     }
 
     /// Whether the picture, perhaps a draft, shows the current neurons and colors.
     pub fn is_drawn(&self) -> bool {
-        self.drawn.is_some()
+        self.drawn.is_some() && !self.awaited
     }
 
     /// Whether the full picture is shown, or at least its first step, and not a draft.
     pub fn is_sharp(&self) -> bool {
-        !self.progressive.shows_draft()
+        !self.awaited && !self.progressive.shows_draft()
     }
 
     /// Whether the picture that was drawn last, perhaps a draft, has this camera.
     pub fn is_from(&self, camera: &Camera) -> bool {
-        self.drawn
-            .as_ref()
-            .is_some_and(|d| d.params.camera == *camera)
+        let drawn = self.drawn.as_ref().filter(|_| !self.awaited);
+        drawn.is_some_and(|d| d.params.camera == *camera)
     }
 
     /// Height (pixels) of the picture.
@@ -281,8 +287,9 @@ impl Stage {
         if size.contains(&0) {
             return Ok(None);
         }
-        if self.building.is_some() && !self.is_in_order(state) {
-            // Neurons were added or removed: the values do not belong to them yet.
+        let nothing_yet = self.drawn.is_none() && self.content.sources.is_empty();
+        if self.building.is_some() && (nothing_yet || !self.is_in_order(state)) {
+            // There is nothing to draw yet. Or neurons were added or removed: the values do not belong to them yet.
             return Ok(self.texture_id());
         }
         let inputs = self.inputs(state, size, ctx.pixels_per_point());

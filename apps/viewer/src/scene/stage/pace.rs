@@ -37,6 +37,8 @@ pub(super) struct Pace {
 pub(super) enum RestPhase {
     /// Waits, since something has just moved.
     Waits,
+    /// The processor draws, or has drawn and what is under the cursor is still to be found out.
+    Draws,
     /// Slices are being drawn.
     Slices,
     /// Everything is drawn in exploration mode; finds out what it left out.

@@ -91,10 +91,14 @@ impl Stage {
                 // While a recording is played, a picture would be of many times.
                 self.pace.phase = match state.playback.playing {
                     true => RestPhase::Collects,
+                    false if self.draws_by_processor(&params, detail) => {
+                        self.begin_by_processor(state, (params, detail), ctx)
+                    }
                     false => self.begin(params, detail)?,
                 };
                 ctx.request_repaint();
             }
+            RestPhase::Draws => self.take_resting(state, (params, detail), ctx)?,
             RestPhase::Slices => {
                 self.slice(params, detail)?;
                 ctx.request_repaint();
@@ -111,7 +115,11 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, params: ViewParams, detail: Detail) -> Result<RestPhase, DeviceError> {
+    pub(super) fn begin(
+        &mut self,
+        params: ViewParams,
+        detail: Detail,
+    ) -> Result<RestPhase, DeviceError> {
         if self.pace.rest_mode != RestMode::Explored {
             let in_view = std::mem::take(&mut self.room.in_view);
             let brought = self.bring(&in_view);

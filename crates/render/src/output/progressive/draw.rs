@@ -119,7 +119,9 @@ impl ProgressiveRenderer {
     pub(super) fn present(&self, gpu: &Gpu, canvas: &Canvas, encoder: &mut wgpu::CommandEncoder) {
         let fine = !self.shows_draft;
         let recolored = self.recoloring.colored().filter(|_| fine);
-        let pixels = recolored.map_or(&canvas.targets.pixels, StaticPicture::pixels);
+        let given = self.given.as_ref().filter(|_| fine);
+        let own = given.unwrap_or(&canvas.targets.pixels);
+        let pixels = recolored.map_or(own, StaticPicture::pixels);
         let from = (pixels, &canvas.targets.normal);
         self.presenter
             .present(gpu, from, &canvas.screen, &self.outlines, encoder);

@@ -34,6 +34,7 @@ use crate::shading::finish::{Finish, Finisher, Last};
 use crate::shading::present::{Outlines, Presenter};
 use crate::shading::shade::PipelineKey;
 use crate::sources::VertexSource;
+use neurotess_picture::Image;
 use neurotess_picture::color::{ColorTable, InstanceValues};
 
 use canvas::Canvas;
@@ -60,6 +61,8 @@ pub struct ProgressiveRenderer {
     tables: u64,
     states: Vec<u32>,
     under_way: Option<UnderWay>,
+    /// What shows instead of the fine canvas's own picture.
+    given: Option<wgpu::Buffer>,
     /// The view whose occlusion the fine canvas holds.
     occluded: Option<ViewParams>,
     recoloring: Recoloring,
@@ -88,6 +91,7 @@ impl ProgressiveRenderer {
             tables: 1,
             states: Vec::new(),
             under_way: None,
+            given: None,
             occluded: None,
             recoloring: Recoloring::default(),
             clock: Arc::default(),
@@ -146,8 +150,36 @@ impl ProgressiveRenderer {
     /// Begins a picture, which [`ProgressiveRenderer::slice`] then draws.
     pub fn begin(&mut self, params: ViewParams, steps: Steps) {
         self.drop_static();
+        self.given = None;
         self.occluded = None;
         self.under_way = Some(UnderWay::new(params, steps));
+    }
+
+    /// Shows a picture of this view that someone else has drawn, until another one is begun.
+    ///
+    /// # Errors
+    /// What the device cannot do.
+    pub fn put(
+        &mut self,
+        gpu: &Gpu,
+        params: &ViewParams,
+        image: &Image,
+    ) -> Result<(), DeviceError> {
+        self.drop_static();
+        self.stop();
+        self.make_canvas(gpu, false, params.size, samples_in_sub_pixel(gpu, 4))?;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let given = make(gpu, "given", image.pixels.len() as u64, usage);
+        gpu.queue.write_buffer(&given, 0, &image.pixels);
+        self.given = Some(given);
+        self.shows_draft = false;
+        self.show(gpu);
+        gpu.check()
+    }
+
+    /// Whether no pipelines were made yet: the first draft or slice makes them.
+    pub fn is_new(&self) -> bool {
+        self.renderers.is_empty()
     }
 
     /// Draws no more of the picture under way. A static picture goes on.
@@ -157,7 +189,7 @@ impl ProgressiveRenderer {
 
     /// Share of the picture under way that has been drawn; none if no picture is under way.
     pub fn progress(&self) -> Option<f32> {
-        let way = self.under_way?;
+        let way = self.under_way.filter(|way| !way.hidden)?;
         let made = way.step * way.steps.slices + way.slice;
         Some(made as f32 / (way.steps.steps * way.steps.slices) as f32)
     }
