@@ -30,7 +30,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     if cli.common.allow_large {
         neurotess::formats::budget::allow_large();
     }
+    let threads = cli.common.threads;
     let reporter = Reporter::new(cli.common);
+    if threads.is_some() {
+        // What is drawn or checked shares these threads. A program that has its own already keeps them.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(reporter.threads());
+        let _ = pool.build_global();
+    }
     let mut code = 1;
     if let Err(e) = run(&cli, &reporter) {
         if e.is::<Usage>() {
