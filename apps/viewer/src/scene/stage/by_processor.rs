@@ -29,8 +29,12 @@ impl Stage {
     pub(super) fn draws_by_processor(&self, params: &ViewParams, detail: Detail) -> bool {
         // Levels of another camera, and patches that are left out, are the adapter's.
         let plain = params.frozen.is_none() && detail.smallest <= 0.0;
+        // Colored anew, as it is by the adapter, something translucent has another grain, and a clamped neuron other
+        // outlines.
+        let mut meshes = self.meshes.shown().iter();
+        let alike = meshes.all(|mesh| !mesh.look.is_translucent()) && self.clamped.fine.is_empty();
         let refined = self.pace.rest_mode == RestMode::Refined;
-        self.gpu.adapter.software && plain && refined
+        self.gpu.adapter.software && plain && alike && refined
     }
 
     /// Whether the first draft of a scene is left out: its shaders would be compiled for a second or more, and the
