@@ -277,7 +277,7 @@ fn reports_that_do_not_fit_are_reported_while_the_rest_shows() {
     for (file, said) in [
         (other.join("voltage.h5"), "11 nodes of population"),
         (nodes, "neither a report nor spikes"),
-        (folder.path().join("none.h5"), "cannot be read"),
+        (folder.path().join("none.h5"), "no such report"),
     ] {
         state(&mut window).messages.problems.clear();
         run(&mut window, Edit::SetReport(Some(file)));

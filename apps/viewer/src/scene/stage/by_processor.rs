@@ -30,9 +30,12 @@ impl Stage {
         // Levels of another camera, and patches that are left out, are the adapter's.
         let plain = params.frozen.is_none() && detail.smallest <= 0.0;
         // Colored anew, as it is by the adapter, something translucent has another grain, and a clamped neuron other
-        // outlines.
+        // outlines; a recording is colored anew with every frame, and markers are as large as in its pixels.
         let mut meshes = self.meshes.shown().iter();
-        let alike = meshes.all(|mesh| !mesh.look.is_translucent()) && self.clamped.fine.is_empty();
+        let alike = meshes.all(|mesh| !mesh.look.is_translucent())
+            && self.clamped.fine.is_empty()
+            && self.content.recording.is_none()
+            && self.markers.made().is_none();
         let refined = self.pace.rest_mode == RestMode::Refined;
         self.gpu.adapter.software && plain && alike && refined
     }

@@ -275,7 +275,7 @@ fn traces_are_saved_and_come_back_with_sessions() {
     third.step();
     run(&mut third, Command::Open(vec![session]));
     let problems = state(&mut third).messages.problems.clone();
-    assert!(problems[0].why.contains("cannot be read"), "{problems:?}");
+    assert!(problems[0].why.contains("no such report"), "{problems:?}");
     assert_eq!(self::places(&mut third), places);
     assert!(state(&mut third).trace_plot().is_empty() && viewer(&mut third).fatal.is_none());
     run(
