@@ -11,6 +11,7 @@ use crate::projection::Projection;
 
 /// Instance of what is no neuron: beyond all instances, so it has neither values nor a state.
 pub(crate) const NO_INSTANCE: u32 = u32::MAX - 1;
+
 /// How a band is drawn.
 pub(crate) struct Painting<'a> {
     pub(crate) view: Viewpoint,
@@ -24,6 +25,7 @@ pub(crate) struct Painting<'a> {
     pub(crate) colors: &'a Colors<'a>,
     /// Half the width (sub-pixels) of the wireframe's lines; 0: none.
     pub(crate) wire: f32,
+    /// Says when to stop; another thread may ask for it.
     pub(crate) watch: &'a Watch,
 }
 
