@@ -142,7 +142,18 @@ fn saved_pictures_have_the_axes_that_show() {
         ..Look::default()
     };
     run_undrawn(&mut window, Edit::SetLook(Box::new(look)));
-    assert_ne!(picture(&mut window, "without.png"), with);
+    let without = picture(&mut window, "without.png");
+    assert_ne!(without, with);
+
+    // A picture that is asked for in the frame in which a neuron comes has it.
+    state(&mut window).run(Command::OpenSample(Kind::Granule));
+    wait(&mut window, "the neuron", |w| {
+        state(w).document.neurons.len() == 2
+    });
+    let both = picture(&mut window, "both.png");
+    assert_ne!(both, without);
+    settle(&mut window);
+    assert_eq!(picture(&mut window, "settled.png"), both);
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]

@@ -55,7 +55,7 @@ const TRACED_BULGE: f64 = 0.8;
 const CONTOUR_THICKNESS: f64 = 0.05;
 
 impl Soma {
-    /// Recognises how the samples trace a soma and finds its sphere.
+    /// Recognizes how the samples trace a soma and finds its sphere.
     ///
     /// # Panics
     /// If there is no sample, or a parent is not among the samples.

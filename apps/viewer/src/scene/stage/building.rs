@@ -93,14 +93,7 @@ impl Stage {
         if self.building.is_some() {
             return Ok(());
         }
-        let colors = ColorInputs::new(&state.document);
-        let members = state.document.neurons.revisions().members;
-        let checked = (
-            members,
-            state.sources.geometry(),
-            colors,
-            state.document.look.radius_factor(),
-        );
+        let checked = checked(state);
         if self.on_device.checked.as_ref() == Some(&checked) {
             return Ok(());
         }
@@ -141,6 +134,11 @@ impl Stage {
         }
         self.build(state, sources, checked, ctx);
         Ok(())
+    }
+
+    /// Whether meshes and colors are those of the document, or never will be because preparing them failed.
+    pub(crate) fn is_prepared(&self, state: &State) -> bool {
+        !self.is_building() && self.on_device.checked.as_ref() == Some(&checked(state))
     }
 
     fn replace(
@@ -217,6 +215,16 @@ impl Stage {
         let task = Task::start(progress, move || ctx.request_repaint(), work);
         self.building = Some((of, task));
     }
+}
+
+/// What the templates on the device depend on.
+fn checked(state: &State) -> Checked {
+    (
+        state.document.neurons.revisions().members,
+        state.sources.geometry(),
+        ColorInputs::new(&state.document),
+        state.document.look.radius_factor(),
+    )
 }
 
 /// Meshes and color keys that are on the device.

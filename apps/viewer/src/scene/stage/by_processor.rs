@@ -58,7 +58,7 @@ impl Stage {
         ctx: &egui::Context,
     ) -> RestPhase {
         self.set_rest_detail(&params, detail);
-        let (content, markers, meshes) = self.saved_content();
+        let (content, markers, meshes) = self.saved_content(state);
         let scene = StillScene {
             gpu: None,
             content,

@@ -15,7 +15,7 @@ use crate::io::task::{Progress, Task};
 use crate::model::markers::MarkerRef;
 use crate::model::revision::Revision;
 use crate::model::state::State;
-use crate::scene::content::SceneContent;
+use crate::scene::content::{self, SceneContent};
 use crate::scene::markers::{MarkerInputs, MarkerRequest, SceneMarkers, settings};
 use crate::scene::meshes::{self, SceneMesh};
 
@@ -262,11 +262,14 @@ impl Stage {
         things
     }
 
-    /// The scene, and markers and meshes with it, for pictures that are saved.
+    /// The scene, and markers and meshes with it, for pictures that are saved. Its instances are those of the
+    /// document: those of the stage may be a frame older.
     pub(crate) fn saved_content(
         &self,
+        state: &State,
     ) -> (SceneContent, Option<Arc<SceneMarkers>>, Vec<SceneMesh>) {
         let mut content = self.content.clone();
+        content.instances = content::instances(state, &content.sources);
         let markers = self.markers.made().cloned();
         if let Some(markers) = &markers {
             markers.add_to(&mut content);

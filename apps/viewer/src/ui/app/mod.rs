@@ -23,6 +23,7 @@ use crate::model::command::{Command, listed};
 use crate::model::crossings::{Crossing, CrossingKey};
 use crate::model::document::SomaEdit;
 use crate::model::revision::Revision;
+use crate::model::save::SaveRequest;
 use crate::model::settings::Settings;
 use crate::model::state::{Dialog, Effect, State};
 use crate::scene::stage::Stage;
@@ -58,6 +59,8 @@ pub struct Viewer {
     /// The error that ends the program: the device is lost.
     pub fatal: Option<String>,
     quits: bool,
+    /// A picture or film that waits until the stage has the meshes and colors of the document.
+    unprepared: Option<SaveRequest>,
     /// A text for the clipboard.
     copied: Option<String>,
     /// Whether the window is to fill the screen, or to leave it.
@@ -117,6 +120,7 @@ impl Viewer {
             files: None,
             fatal: None,
             quits: false,
+            unprepared: None,
             copied: None,
             full_screen: None,
             theme: None,
@@ -172,7 +176,7 @@ impl Viewer {
         let empty = self.state.document.neurons.is_empty();
         let opened = self.state.views.split.is_some() == self.second.is_some();
         let drawn = empty || opened && stages.all(Stage::is_settled);
-        let reads = self.worker.is_busy() || self.plots.is_busy();
+        let reads = self.worker.is_busy() || self.plots.is_busy() || self.unprepared.is_some();
         let busy = reads || self.crossing_search.is_busy();
         !busy && !self.motion.is_flying() && self.loading.is_none() && drawn
     }
@@ -185,7 +189,7 @@ impl Viewer {
         for message in self.worker.messages() {
             self.take(message);
         }
-        self.state.writing = self.worker.is_saving();
+        self.state.writing = self.worker.is_saving() || self.unprepared.is_some();
         self.ask_to_close(&ctx);
         self.take_drops(&ctx);
         self.shortcuts(&ctx);
@@ -201,6 +205,7 @@ impl Viewer {
             self.run(command);
             ctx.request_repaint();
         }
+        self.save_prepared();
         self.do_effects(&ctx);
         self.request_somata();
         self.request_markers();
@@ -326,6 +331,7 @@ impl Viewer {
             Effect::Reload => self.reload(),
             Effect::Cancel => {
                 self.waiting.clear();
+                self.unprepared = None;
                 let all = self
                     .worker
                     .progress()

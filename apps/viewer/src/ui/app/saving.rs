@@ -37,9 +37,15 @@ impl Viewer {
             // written.
             return self.save_session(path);
         }
-        if self.worker.is_saving() {
+        if self.worker.is_saving() || self.unprepared.is_some() {
             self.state
                 .problem("save", "wait until the last one is written, or stop it");
+            return;
+        }
+        let draws = matches!(request, SaveRequest::Picture(_) | SaveRequest::Film(_));
+        let shows = !self.state.document.neurons.is_empty();
+        if draws && shows && !self.stage.is_prepared(&self.state) {
+            self.unprepared = Some(request);
             return;
         }
         match request {
@@ -90,6 +96,14 @@ impl Viewer {
                 let work = move |_: &Progress| save::plot(&path, &plot).map(Into::into);
                 self.worker.save(progress, work);
             }
+        }
+    }
+
+    /// Begins to draw what waited until the stage had the meshes and colors of the document.
+    pub(super) fn save_prepared(&mut self) {
+        if self.unprepared.is_some() && self.stage.is_prepared(&self.state) {
+            let request = self.unprepared.take();
+            request.into_iter().for_each(|request| self.save(request));
         }
     }
 
@@ -156,7 +170,7 @@ impl Viewer {
     }
 
     fn still_scene(&self) -> StillScene {
-        let (content, markers, meshes) = self.stage.saved_content();
+        let (content, markers, meshes) = self.stage.saved_content(&self.state);
         let gpu = self.stage.gpu();
         StillScene {
             // What draws by the processor takes several times as long as the processor itself.
