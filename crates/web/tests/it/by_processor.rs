@@ -76,8 +76,8 @@ fn what_is_hidden_does_not_show_and_is_not_picked() {
             .expect("an answer");
         serde_json::from_slice(&told.told).expect("JSON")
     };
-    let kinds: [(fn(&[u8]) -> bool, bool); 2] = [(is_red, true), (is_blue, false)];
-    for (is, is_soma) in kinds {
+    for is_soma in [true, false] {
+        let is = if is_soma { is_red } else { is_blue };
         let point = pick(&all, place(is)).as_u64().expect("a point") as usize;
         assert_eq!(cell.mesh.tracing[point].role == Role::Soma, is_soma);
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use neurotess_color::ColorScheme;
-use neurotess_mesh::{Format, check, read_bytes};
+use neurotess_mesh::Format;
 use neurotess_render::Placement;
 use neurotess_testing::{full, shared, shared_data};
 use neurotess_wasm::{Answer, Calls};
@@ -243,27 +243,13 @@ fn every_format_is_read_and_every_file_saved_as_the_library_does() {
     opened.choose(&file);
     let mut calls = Calls::default();
     calls.open("cell.swc", swc).expect("a cell");
-    // Rounded tips have sines and cosines, whose last bit differs from one platform to another.
     for format in [Format::Ply, Format::Obj, Format::Stl, Format::Glb] {
         let extension = format.extension();
         let theirs = opened.asked(&json!({"mesh": extension, "level": 2}));
         let ours = calls.mesh(extension, 2).expect("a file");
         let told = |answer: &Answer| serde_json::from_slice::<Value>(&answer.told).expect("JSON");
         assert_eq!(told(&theirs), told(&ours), "{extension}");
-        let [theirs, ours] = [theirs.bytes, ours.bytes]
-            .map(|bytes| check(&read_bytes(&bytes, format).expect("a mesh")));
-        assert_eq!(
-            (
-                theirs.vertices,
-                theirs.triangles,
-                theirs.euler,
-                theirs.closed
-            ),
-            (ours.vertices, ours.triangles, ours.euler, ours.closed),
-            "{extension}"
-        );
-        let share = theirs.volume / ours.volume;
-        assert!((share - 1.0).abs() < 1e-6, "{extension}: {share}");
+        assert!(theirs.bytes == ours.bytes, "{extension}");
     }
     let theirs = opened.asked(&json!({"tracing": true}));
     let tracing = calls.tracing().expect("a file").bytes;
