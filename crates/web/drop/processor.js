@@ -2,8 +2,13 @@
 // the core makes the pixels, see drawing.rs of bindings/wasm. Pages by themselves have no core, since the command cannot
 // carry one, so this is not part of them.
 
-/** Samples of a pixel of a fine picture, and of a draft. */
-const SAMPLES = 16, DRAFT_SAMPLES = 4;
+/** Samples of a pixel of drafts and first fine pictures, and of finished ones. */
+const FEW = 4, MANY = 16;
+/**
+ * The first stay where they take longer (ms), since a picture cannot be stopped; and where there are more pixels: many
+ * samples of a soma that fills them take 900 bytes each.
+ */
+const SLOW = 200, MOST_PIXELS = 1.2e6;
 
 /** @param {number} light linear @returns {number} the byte of it (IEC 61966-2-1) */
 const encoded = (light) => Math.round(255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055));
@@ -28,8 +33,13 @@ export class ProcessorRenderer {
     this.small = document.createElement('canvas');
     /** Four bytes a tracing point; the last is 0 for those that are hidden. */
     this.colors = new Uint8Array(4 * scene.keys);
-    /** What the canvas shows: a view in JSON; empty if its colors have changed since. */
+    /** What the canvas shows: a view in JSON, and the samples of its pixels. */
     this.shown = '';
+    this.samples = FEW;
+    /** Whether colors have changed since. */
+    this.recolored = false;
+    /** Whether the first fine picture took long. */
+    this.slow = false;
     /** When the last picture is there. @type {Promise<void>} */
     this.drawing = Promise.resolve();
   }
@@ -37,7 +47,7 @@ export class ProcessorRenderer {
   /** @param {Float32Array} table linear colors by key */
   setColors(table) {
     this.colors = Uint8Array.from(this.colors, (_, k) => (k % 4 < 3 ? encoded(table[k]) : 255 * table[k]));
-    this.shown = '';
+    this.recolored = true;
   }
 
   /**
@@ -48,7 +58,7 @@ export class ProcessorRenderer {
     const size = [this.canvas.width, this.canvas.height].map((n) => Math.max(Math.round(n * share), 1));
     const { eye, up, near } = camera.view(size[1]), { lod, background, wireframe, occlusion } = look, ratio = share * look.pixelRatio;
     return { size, eye, target: camera.target, up, fov: 2 * Math.atan(camera.tan), orthographic: camera.orthographic, near,
-      level: 'level' in lod ? lod.level : 0, error: 'pixels' in lod ? lod.pixels : 0, samples: draft ? DRAFT_SAMPLES : SAMPLES,
+      level: 'level' in lod ? lod.level : 0, error: 'pixels' in lod ? lod.pixels : 0, samples: this.samples,
       occlusion: occlusion && !draft, wire: wireframe ? ratio : 0, least_width: look.leastWidth * ratio, background, draft };
   }
 
@@ -57,12 +67,17 @@ export class ProcessorRenderer {
    * @param {{ step: number, steps: number, scale: number }} how
    */
   draw(camera, look, { step, steps, scale }) {
-    const draft = steps < 2, view = this.view(camera, look, draft, draft ? scale : 1), text = JSON.stringify(view);
-    if (step || text === this.shown) return;
-    this.shown = text;
-    this.drawing = this.core.ask({ view, colors: this.colors }).then(({ told: [width, height], bytes }) => {
+    const draft = steps < 2, view = this.view(camera, look, draft, draft ? scale : 1), [width, height] = view.size;
+    if (step && (this.slow || width * height > MOST_PIXELS)) return;
+    const text = JSON.stringify({ ...view, samples: 0 }), same = text === this.shown;
+    const samples = Math.max(step ? MANY : FEW, same ? this.samples : 0);
+    if (same && !this.recolored && samples === this.samples) return;
+    Object.assign(this, { shown: text, samples, recolored: false });
+    const begin = performance.now();
+    this.drawing = this.core.ask({ view: { ...view, samples }, colors: this.colors }).then(({ told: [width, height], bytes }) => {
       // None come if the core has another cell by now.
       if (bytes.length) this.put(new ImageData(new Uint8ClampedArray(bytes), width, height));
+      if (!draft && !step && !same) this.slow = performance.now() - begin > SLOW;
     }).catch((/** @type {Error} */ { message }) => this.failed(message));
   }
 
