@@ -15,7 +15,7 @@ pub struct Calls {
 pub struct Answer {
     /// JSON.
     pub told: Vec<u8>,
-    /// A page's cells, or a file.
+    /// A page's cells, a file, or pixels.
     pub bytes: Vec<u8>,
 }
 
@@ -50,10 +50,39 @@ impl Calls {
         Ok(Answer::new(&lost, bytes))
     }
 
+    /// The cell's picture as pixels of four bytes: none if the colors are those of another cell, which was there before. Tells
+    /// its size. `view`: JSON, see `Asked`; `colors`: red, green, blue and whether it shows, of each tracing point.
+    ///
+    /// # Errors
+    /// There is no cell, or no such view.
+    pub fn draw(&mut self, view: &str, colors: &[u8]) -> Result<Answer, String> {
+        let asked = serde_json::from_str(view).map_err(|e| e.to_string())?;
+        let image = self.cell_mut()?.image(&asked, colors)?;
+        let size = [image.width, image.height];
+        Ok(Answer::new(&size, image.pixels))
+    }
+
+    /// Tells the tracing point that shows at a pixel of such a picture, or next to it; null if there is none.
+    ///
+    /// # Errors
+    /// There is no cell, or no such view.
+    pub fn pick(&mut self, view: &str, colors: &[u8], at: [i64; 2]) -> Result<Answer, String> {
+        let asked = serde_json::from_str(view).map_err(|e| e.to_string())?;
+        let point = self.cell_mut()?.point_at(&asked, colors, at)?;
+        Ok(Answer::new(&point, Vec::new()))
+    }
+
+    fn cell_mut(&mut self) -> Result<&mut DroppedCell, String> {
+        self.cell.as_mut().ok_or_else(none)
+    }
+
     fn cell(&self) -> Result<&DroppedCell, String> {
-        let none = || "there is no cell: open a file first".to_owned();
         self.cell.as_ref().ok_or_else(none)
     }
+}
+
+fn none() -> String {
+    "there is no cell: open a file first".to_owned()
 }
 
 impl Answer {

@@ -9,13 +9,15 @@ use neurotess_generate::{GenerateOptions, generate};
 use neurotess_mesh::{CoarseMesh, Surface, write};
 use neurotess_morphology::edit::{self, Edit};
 use neurotess_morphology::{Measures, Morphology};
-use neurotess_picture::Placement;
+use neurotess_picture::{Image, Placement};
 use neurotess_plot::{Measure, SHOLL_STEP, of_measure};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess_web::{
     CellsText, MAX_KEYS, PageCell, PageMarkers, PageOptions, WebError, shared_cells,
 };
 use serde::Serialize;
+
+use crate::drawing::{Asked, Drawing};
 
 /// Most triangles of a mesh that is saved: its file is in memory, of which a module has 4 GB. As in saving.js.
 const MAX_TRIANGLES: usize = 20_000_000;
@@ -34,6 +36,7 @@ pub(crate) struct DroppedCell {
     morphology: Morphology,
     mesh: CoarseMesh,
     warnings: Vec<String>,
+    drawing: Drawing,
 }
 
 /// What the page tells of a cell.
@@ -89,6 +92,7 @@ impl DroppedCell {
             name: stem(file),
             file: file.to_owned(),
             format: read.format,
+            drawing: Drawing::new(&made.mesh),
             mesh: made.mesh,
             morphology: read.morphology,
         })
@@ -167,6 +171,37 @@ impl DroppedCell {
             faces,
         };
         Ok((counts, bytes.into_inner()))
+    }
+
+    /// A picture; empty if there are not as many colors as tracing points: they are another cell's.
+    ///
+    /// # Errors
+    /// There is no such view.
+    pub(crate) fn image(&mut self, asked: &Asked, colors: &[u8]) -> Result<Image, String> {
+        if !self.are_colors(colors) {
+            return Ok(Image::new(0, 0));
+        }
+        self.drawing.image(&self.mesh, asked, colors)
+    }
+
+    /// The tracing point that shows at a pixel of a picture, or next to it.
+    ///
+    /// # Errors
+    /// There is no such view.
+    pub(crate) fn point_at(
+        &mut self,
+        asked: &Asked,
+        colors: &[u8],
+        at: [i64; 2],
+    ) -> Result<Option<u32>, String> {
+        if !self.are_colors(colors) {
+            return Ok(None);
+        }
+        self.drawing.point_at(&self.mesh, asked, colors, at)
+    }
+
+    fn are_colors(&self, colors: &[u8]) -> bool {
+        colors.len() == 4 * self.mesh.tracing.len()
     }
 
     /// The tracing as SWC with its radii mended, as `neurotess convert --mend-radii` writes it, and what SWC cannot say.

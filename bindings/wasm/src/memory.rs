@@ -1,6 +1,6 @@
 //! The only module with `unsafe`: names that the worker calls, and where bytes are in linear memory.
 //!
-//! The worker asks for room by [`take`], writes there, and calls [`open`], [`mesh`] or [`tracing`]. These return 0, or 1
+//! The worker asks for room by [`take`], writes there, and calls [`open`], [`mesh`], [`tracing`], [`draw`] or [`pick`]. These return 0, or 1
 //! if they failed. Then the document, or what failed, is at [`told`], and bytes are at [`bytes`]: until the next call, and
 //! in a view of the memory that is made after the call, since memory may grow. After a panic the module is not to be used
 //! any more, but [`told`] has its text.
@@ -50,6 +50,20 @@ pub extern "C" fn mesh(level: u32) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn tracing() -> u32 {
     answered(|calls| calls.tracing())
+}
+
+/// Draws the view in the input, whose last bytes, so many, are its JSON; before it are colors.
+#[unsafe(no_mangle)]
+pub extern "C" fn draw(view: usize) -> u32 {
+    let (view, colors) = input(view);
+    answered(|calls| calls.draw(&view, &colors))
+}
+
+/// What is at a pixel of such a view.
+#[unsafe(no_mangle)]
+pub extern "C" fn pick(view: usize, x: i32, y: i32) -> u32 {
+    let (view, colors) = input(view);
+    answered(|calls| calls.pick(&view, &colors, [x, y].map(i64::from)))
 }
 
 /// Where the document is.

@@ -19,10 +19,8 @@ pub enum PictureError<E> {
 }
 
 /// What a picture took, and what it shows.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Milliseconds from the beginning to the last byte.
-    pub cpu_ms: f64,
     /// Number of bands.
     pub bands: usize,
     /// Most bytes of samples at once.

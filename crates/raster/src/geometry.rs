@@ -74,13 +74,6 @@ pub(crate) fn drawn<'a>(
     let refinement = Refinement::of_patches(mesh, lod, &options, &shown);
     counts.add(&shown, &refinement);
     let projection = painting.projection;
-    let making = Making {
-        placed: &placed,
-        projection,
-        ghosted: painting.look.ghosted,
-        state: job.instance.state,
-        tracing: &mesh.tracing,
-    };
     let keys = keys_of(template);
     let colors: Cow<'a, [[f32; 4]]> = match (job.shared, job.instance.state & HIGHLIGHTED) {
         (Some(shared), 0) => Cow::Borrowed(shared),
@@ -99,6 +92,15 @@ pub(crate) fn drawn<'a>(
             .cut_normal()
             .map(|normal| -projection.in_view(normal) * 32767.0),
         wire: painting.wire,
+    };
+    let making = Making {
+        scene,
+        keys: &paint.keys,
+        placed: &placed,
+        projection,
+        ghosted: painting.look.ghosted,
+        state: job.instance.state,
+        tracing: &mesh.tracing,
     };
     let blocks: Vec<usize> = (0..refinement.patch_blocks()).collect();
     let pieces = blocks.par_chunks(TOGETHER).map(|blocks| {
@@ -135,6 +137,8 @@ pub(crate) fn drawn<'a>(
 
 /// Makes vertices of an instance.
 struct Making<'a> {
+    scene: &'a Scene<'a>,
+    keys: &'a [u32],
     placed: &'a Placed,
     projection: &'a Projection,
     ghosted: f32,
@@ -162,6 +166,9 @@ impl Making<'_> {
         if self.state & WITHOUT_NEURITES != 0 {
             coverage = if is_soma { 1000.0 } else { 0.0 };
         } else if self.state & WITHOUT_SOMA != 0 && is_soma {
+            coverage = -1000.0;
+        }
+        if self.scene.hides(self.keys[point as usize]) {
             coverage = -1000.0;
         }
         let shown = Shown {

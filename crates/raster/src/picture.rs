@@ -1,7 +1,5 @@
 //! Pictures of any size, band by band. Where nothing shows, there are no tiles.
 
-use std::time::Instant;
-
 use neurotess_picture::color::{ColorTable, linear};
 use neurotess_picture::{Image, PictureOptions, Viewpoint, Watch};
 use rayon::prelude::*;
@@ -35,7 +33,6 @@ pub fn draw<E>(
     watch: &Watch,
     mut take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
-    let clock = Instant::now();
     let setup = Setup::new(view, options);
     let mut cost = Cost::default();
     let counts = Counts::default();
@@ -55,7 +52,6 @@ pub fn draw<E>(
         cost.bands += 1;
         take(band.rows.start, image).map_err(PictureError::Sink)?;
     }
-    cost.cpu_ms = clock.elapsed().as_secs_f64() * 1e3;
     counts.add_to(&mut cost);
     Ok(cost)
 }

@@ -1,8 +1,6 @@
 //! Pictures that are colored anew without being drawn anew. Twin of keyed.wgsl, collect.wgsl and recolor.wgsl; what they
 //! hold is in `neurotess_picture::recolor`.
 
-use std::time::Instant;
-
 use neurotess_picture::color::{ColorTable, linear};
 use neurotess_picture::recolor::{
     Collected, Contrast, Matrix, MatrixBuilder, Weighed, Weights, packed,
@@ -90,7 +88,6 @@ pub fn draw_static(
     options: &PictureOptions,
     watch: &Watch,
 ) -> Result<(StaticPicture, Cost), PictureError<std::convert::Infallible>> {
-    let clock = Instant::now();
     let setup = Setup::new(view, options);
     let counts = Counts::default();
     let mut cost = Cost::default();
@@ -114,7 +111,6 @@ pub fn draw_static(
         cost.bands += 1;
     }
     counts.add_to(&mut cost);
-    cost.cpu_ms = clock.elapsed().as_secs_f64() * 1e3;
     let picture = StaticPicture {
         size: setup.size,
         matrix: matrix.finish(),
@@ -255,6 +251,19 @@ impl StaticPicture {
     /// What shows: each color key of each instance once, in order.
     pub fn keys(&self) -> &[VisibleKey] {
         &self.matrix.keys
+    }
+
+    /// The key that most of what shows in a pixel has its color of; none where nothing shows.
+    pub fn key_at(&self, [x, y]: [u32; 2]) -> Option<VisibleKey> {
+        let [width, height] = self.size;
+        if x >= width || y >= height {
+            return None;
+        }
+        let pixel = (y * width + x) as usize;
+        let [first, end] = [0, 1].map(|k| self.matrix.rows[pixel + k][0] as usize);
+        let weights = self.matrix.weights[first..end].iter();
+        let most = weights.max_by_key(|weight| weight.low & 0xffff)?;
+        Some(self.matrix.keys[most.color as usize])
     }
 
     /// Number of weights: of all pixels' color keys.

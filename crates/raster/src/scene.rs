@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use neurotess_mesh::CoarseMesh;
+use neurotess_picture::color::CATEGORY_BIT;
 use neurotess_picture::{AdaptiveSettings, Instance, SceneError, Template, check_placement};
 use neurotess_refine::{patch_sphere, sphere_around};
 use rayon::prelude::*;
@@ -16,6 +17,8 @@ pub struct Scene<'a> {
     pub(crate) settings: AdaptiveSettings,
     pub(crate) markers: Option<&'a SceneMarkers>,
     pub(crate) meshes: &'a [SceneMesh],
+    /// By category: whether it is left out.
+    hidden: &'a [bool],
 }
 
 /// A template and where it is.
@@ -51,6 +54,7 @@ impl<'a> Scene<'a> {
             settings,
             markers: None,
             meshes: &[],
+            hidden: &[],
         })
     }
 
@@ -66,6 +70,19 @@ impl<'a> Scene<'a> {
     pub fn with_meshes(mut self, meshes: &'a [SceneMesh]) -> Self {
         self.meshes = meshes;
         self
+    }
+
+    /// The same without the parts of cells that have hidden categories: the border is at the last tracing point that has
+    /// another. Twin of `is_hidden` in shade.wgsl.
+    #[must_use]
+    pub fn without(mut self, hidden: &'a [bool]) -> Self {
+        self.hidden = hidden;
+        self
+    }
+
+    pub(crate) fn hides(&self, color_key: u32) -> bool {
+        let category = (color_key & !CATEGORY_BIT) as usize;
+        color_key & CATEGORY_BIT != 0 && self.hidden.get(category) == Some(&true)
     }
 
     /// Number of patches of all instances.

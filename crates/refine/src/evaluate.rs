@@ -304,13 +304,14 @@ impl PatchShape {
         let share = across.length() / radius.max(F32x4::splat(f32::MIN_POSITIVE));
         let share = share.min(F32x4::ONE);
         let angle = share * std::f32::consts::FRAC_PI_2;
+        // Of libm, since those of platforms differ in the last bit.
         let each = |of: fn(f32) -> f32| F32x4::from_array(angle.to_array().map(of));
         let stretch = F32x4::select(
             share.cmpgt(F32x4::splat(1e-4)),
-            each(f32::sin) / share,
+            each(libm::sinf) / share,
             F32x4::splat(std::f32::consts::FRAC_PI_2),
         );
-        let dome = across * stretch + axis * (radius * each(f32::cos));
+        let dome = across * stretch + axis * (radius * each(libm::cosf));
         Points {
             position: a.center + dome,
             normal: dome.normalize_or(axis),

@@ -1,9 +1,13 @@
 // The cell's own page, in a frame: the page that `neurotess html` writes, whose host stays while cells change.
 
+import { ProcessorRenderer } from './processor.js';
+
 export class Frame {
-  /** @param {HTMLIFrameElement} element @param {string} form of a page: see `page_form` in page.rs */
-  constructor(element, form) {
+  /** @param {HTMLIFrameElement} element @param {string} form of a page: see `page_form` in page.rs @param {import('./core.js').Core} core */
+  constructor(element, form, core) {
     this.element = element;
+    // Its page finds here who draws where the browser's graphics cannot.
+    Object.assign(element, { processor: (/** @type {any[]} */ ...given) => new ProcessorRenderer(core, .../** @type {[any, any, any]} */ (given)) });
     this.form = form;
   }
 

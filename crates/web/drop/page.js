@@ -15,7 +15,7 @@ export class Page {
   /** @param {{ shaders: any, cells: any, bytes: ArrayBuffer, first: number }} data see dropping.rs */
   constructor({ shaders: { form, worker, sample, sample_name: name }, cells: { licenses }, bytes, first }) {
     this.core = new Core(worker, bytes.slice(first));
-    this.frame = new Frame(byId('frame'), form);
+    this.frame = new Frame(byId('frame'), form, this.core);
     this.sample = /** @type {[string, string]} */ ([name, sample]);
     /** The cell that is shown. @type {{ name: string, cells: string } | undefined} */
     this.cell = undefined;

@@ -3,7 +3,7 @@
 /**
  * What the core exports.
  * @typedef {{ memory: WebAssembly.Memory, take: (length: number) => number, open: (name: number) => number, mesh: (level: number) => number,
- *   tracing: () => number, told: () => number, told_length: () => number, bytes: () => number, bytes_length: () => number }} Core
+ *   tracing: () => number, draw: (view: number) => number, pick: (view: number, x: number, y: number) => number, told: () => number, told_length: () => number, bytes: () => number, bytes_length: () => number }} Core
  */
 
 /** @type {Promise<Core> | undefined} */
@@ -25,12 +25,17 @@ function write(core, ...parts) {
 const told = (core) => new TextDecoder().decode(view(core, core.told(), core.told_length()));
 
 /** @param {Core} core @param {any} call @returns {number} 1 if it failed */
-function run(core, { open, file, mesh, level }) {
+function run(core, { open, file, mesh, level, view, colors, at }) {
   const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text);
   if (open !== undefined) {
     const name = bytes(open);
     write(core, new Uint8Array(file), name);
     return core.open(name.length);
+  }
+  if (view !== undefined) {
+    const text = bytes(JSON.stringify(view));
+    write(core, colors, text);
+    return at ? core.pick(text.length, at[0], at[1]) : core.draw(text.length);
   }
   if (mesh === undefined) return core.tracing();
   write(core, bytes(mesh));

@@ -15,6 +15,8 @@ import { Scene } from './scene.js';
 import { STEPS, WebGpuRenderer } from './webgpu.js';
 import { WebGlRenderer } from './webgl.js';
 
+/** @typedef {import('../drop/processor.js').ProcessorRenderer} ProcessorRenderer of the page around this one */
+
 /** Error (pixels) of automatic levels: at rest it cannot be seen. */
 const PIXELS = 0.5, DRAFT_PIXELS = 2, DRAFT_LEVEL = 3;
 /** Milliseconds between two questions what is under the pointer. */
@@ -38,7 +40,7 @@ export class App {
     this.measuring = new Measuring(this.scene, (text) => this.say(text));
     /** What was hidden before the last click on the legend. @type {number[]} */
     this.hiddenBefore = [];
-    /** @type {WebGpuRenderer | WebGlRenderer | undefined} */
+    /** @type {WebGpuRenderer | WebGlRenderer | ProcessorRenderer | undefined} */
     this.renderer = undefined;
     this.hovered = 0;
     /** Pixels of the canvas for each of the page. */
@@ -48,14 +50,14 @@ export class App {
     this.hasAddress = location.protocol !== 'about:';
   }
 
-  /** Opens a renderer: WebGPU, or else WebGL 2. */
+  /** Opens a renderer: WebGPU, or else WebGL 2, or else the processor, in the page that takes tracings. */
   async open() {
     const begin = performance.now();
     this.resize();
     this.showBackground();
     const wanted = read(location.hash).renderer;
     const failed = (/** @type {string} */ message) => this.say(message);
-    /** @type {WebGpuRenderer | WebGlRenderer | null} */
+    /** @type {WebGpuRenderer | WebGlRenderer | ProcessorRenderer | null} */
     let renderer = wanted === 'webgl' ? null : await WebGpuRenderer.open(this.canvas, this.scene, this.shaders, failed);
     let said = '';
     if (!renderer) {
@@ -63,12 +65,17 @@ export class App {
       said = 'Drawn with WebGL 2, since there is no WebGPU here: one level everywhere.';
     }
     if (!renderer) {
+      // Pages by themselves have none: see frame.js.
+      renderer = /** @type {any} */ (frameElement)?.processor?.(this.canvas, this.scene, failed);
+      said = /** @type {any} */ (renderer)?.said;
+    }
+    if (!renderer) {
       for (const id of ['panel', 'legend', 'scale']) byId(id).hidden = true;
-      this.say('This browser has neither WebGPU nor WebGL 2, one of which is needed: use a newer one, or turn hardware acceleration on.');
+      this.say('No WebGPU and no WebGL 2 here: turn hardware acceleration on, or use neurotess render or the page that takes tracings.');
       return;
     }
     this.renderer = renderer;
-    // WebGL draws all of a fine picture in the first of two steps: one is a draft.
+    // All others draw all of a fine picture in the first of two steps: one is a draft.
     const steps = renderer instanceof WebGpuRenderer ? STEPS : 2;
     this.loop = new Loop((how) => this.draw(how), () => /** @type {any} */ (this.renderer).done(), steps);
     this.say(said);
@@ -348,7 +355,9 @@ export class App {
 
   /** The surface as a file. @param {number} level @returns {Promise<{ file: Blob, triangles: number }>} */
   async mesh(level) {
-    const made = await surface(/** @type {any} */ (this.renderer), this.scene, level);
+    const { renderer } = this;
+    if (renderer && 'mesh' in renderer) return renderer.mesh(level);
+    const made = await surface(/** @type {any} */ (renderer), this.scene, level);
     return { file: ply(made), triangles: made.triangles.length / 3 };
   }
 

@@ -46,9 +46,10 @@ const MODULES: [(&str, &str); 23] = [
 ];
 
 /// Those of the page that takes tracings.
-const DROPPING: [(&str, &str); 4] = [
+const DROPPING: [(&str, &str); 5] = [
     module!("files"),
     module!("drop", "core"),
+    module!("drop", "processor"),
     module!("drop", "frame"),
     module!("drop", "page"),
 ];

@@ -139,7 +139,7 @@ impl Camera {
     /// Height (µm) of what the picture shows at the target's depth; of an orthographic camera, at
     /// every depth.
     pub fn height(&self) -> f64 {
-        2.0 * (self.lens.fov / 2.0).tan() * self.eye.distance(self.target)
+        2.0 * self.lens.tan() * self.eye.distance(self.target)
     }
 
     /// Unit directions: right, up and backward.
@@ -199,7 +199,7 @@ impl Camera {
     /// The height is not positive and finite.
     pub fn with_height(&self, height: f64) -> Result<Self, CameraError> {
         let [_, up, backward] = self.axes();
-        let distance = height / 2.0 / (self.lens.fov / 2.0).tan();
+        let distance = height / 2.0 / self.lens.tan();
         if !(height > 0.0 && distance.is_finite()) {
             return Err(CameraError::Height(height));
         }
@@ -277,7 +277,7 @@ impl Camera {
         let (slope, flat) = if self.is_orthographic() {
             (0.0, self.height() / height)
         } else {
-            (2.0 * (self.lens.fov / 2.0).tan() / height, 0.0)
+            (2.0 * self.lens.tan() / height, 0.0)
         };
         PixelSize { slope, flat }
     }
@@ -301,7 +301,7 @@ impl Camera {
 
     /// Tangents of half the angles of view, without the margins.
     pub(crate) fn tangents(&self, aspect: f64, margin: f64) -> (f64, f64) {
-        let tan_y = (self.lens.fov / 2.0).tan() * (1.0 - 2.0 * margin.clamp(0.0, 0.49));
+        let tan_y = self.lens.tan() * (1.0 - 2.0 * margin.clamp(0.0, 0.49));
         (tan_y * aspect, tan_y)
     }
 

@@ -183,7 +183,7 @@ impl Camera {
     /// A camera in the same direction with a target (in the view) that is as far away as makes the
     /// picture this high (µm) there.
     fn at(&self, target: DVec3, height: f64) -> Result<Self, CameraError> {
-        let distance = (height / 2.0).max(1e-3) / (self.fov() / 2.0).tan();
+        let distance = (height / 2.0).max(1e-3) / self.lens().tan();
         let [_, up, backward] = self.axes();
         let target = self.view_from_world.transpose() * target;
         Self::new(target + backward * distance, target, up, self.lens())

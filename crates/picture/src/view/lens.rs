@@ -25,6 +25,11 @@ pub struct Lens {
 }
 
 impl Lens {
+    /// Tangent of half the angle: of libm, since those of platforms differ in the last bit.
+    pub(crate) fn tan(&self) -> f64 {
+        libm::tan(self.fov / 2.0)
+    }
+
     /// An orthographic lens of this angle (radians).
     pub fn orthographic(fov: f64) -> Self {
         Self {

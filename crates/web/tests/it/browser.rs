@@ -19,6 +19,10 @@ const SOFTWARE: [&str; 6] = [
     // Without it, WebGL says that it is by software.
     "--enable-unsafe-swiftshader",
 ];
+/// Neither WebGPU nor WebGL.
+const NO_GRAPHICS: [&str; 2] = ["--disable-gpu", "--disable-3d-apis"];
+/// What it then says itself when a page asks for WebGPU.
+const NO_ADAPTERS: &str = "No available adapters.";
 /// What keeps it from asking others for anything.
 const QUIET: [&str; 8] = [
     "--headless",
@@ -56,6 +60,21 @@ pub(crate) struct Browser {
 impl Browser {
     /// Opens a file in a window of this size. `folder`: for the pipes.
     pub(crate) fn open(folder: &Path, page: &Path, hash: &str, size: [u32; 2]) -> Self {
+        Self::open_with(&SOFTWARE, folder, page, hash, size)
+    }
+
+    /// The same where there is neither WebGPU nor WebGL.
+    pub(crate) fn open_without_graphics(folder: &Path, page: &Path, size: [u32; 2]) -> Self {
+        Self::open_with(&NO_GRAPHICS, folder, page, "", size)
+    }
+
+    fn open_with(
+        graphics: &[&str],
+        folder: &Path,
+        page: &Path,
+        hash: &str,
+        size: [u32; 2],
+    ) -> Self {
         let [to, from] = ["to", "from"].map(|name| folder.join(name));
         let made = Command::new("mkfifo").args([&to, &from]).status();
         assert!(made.is_ok_and(|status| status.success()), "named pipes");
@@ -67,7 +86,7 @@ impl Browser {
                 "chromium",
             ])
             .args(QUIET)
-            .args(SOFTWARE)
+            .args(graphics)
             .arg(profile)
             .envs([("TO", &to), ("FROM", &from)])
             .stdin(Stdio::null())
@@ -189,6 +208,7 @@ impl Browser {
         let params = &event["params"];
         let said = match event["method"].as_str() {
             Some("Runtime.consoleAPICalled") => &params["args"],
+            Some("Log.entryAdded") if params["entry"]["text"] == NO_ADAPTERS => return,
             Some("Log.entryAdded") => &params["entry"],
             Some("Runtime.exceptionThrown") => &params["exceptionDetails"],
             Some("Network.requestWillBeSent") => {

@@ -2,6 +2,7 @@
 
 mod browser;
 mod browsing;
+mod by_processor;
 mod contents;
 mod core;
 mod dropping;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
+use std::time::Instant;
 
 use neurotess::mesh::CoarseMesh;
 use neurotess::picture::color::ColorTable;
@@ -77,6 +78,7 @@ impl Processor {
         options: &PictureOptions,
         take: Take<'_>,
     ) -> anyhow::Result<Cost> {
+        let clock = Instant::now();
         let scene = self.scene(shown)?;
         let drawn = raster::draw(&scene, view, table, options, &self.watch, take);
         let cost = drawn.map_err(|e| match e {
@@ -86,7 +88,7 @@ impl Processor {
         drop(scene);
         self.last = cost.clone();
         Ok(Cost {
-            cpu_ms: cost.cpu_ms,
+            cpu_ms: clock.elapsed().as_secs_f64() * 1e3,
             gpu_ms: None,
             tiles: cost.bands,
             target_bytes: cost.sample_bytes,
