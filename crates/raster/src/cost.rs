@@ -73,11 +73,12 @@ impl Counts {
     }
 
     /// Adds what was counted.
-    pub(crate) fn add_to(self, cost: &mut Cost) {
-        cost.patches = self.patches.into_inner();
-        cost.vertices = self.vertices.into_inner();
-        cost.triangles = self.triangles.into_inner();
-        let levels = (0..).zip(self.levels.map(AtomicU64::into_inner));
+    pub(crate) fn add_to(&self, cost: &mut Cost) {
+        let count = |of: &AtomicU64| of.load(Ordering::Relaxed);
+        cost.patches = count(&self.patches);
+        cost.vertices = count(&self.vertices);
+        cost.triangles = count(&self.triangles);
+        let levels = (0..).zip(self.levels.iter().map(count));
         cost.levels = levels.filter(|(_, sides)| *sides > 0).collect();
     }
 }

@@ -33,41 +33,58 @@ pub fn draw<E>(
     watch: &Watch,
     mut take: impl FnMut(u32, Image) -> Result<(), E>,
 ) -> Result<Cost, PictureError<E>> {
-    let setup = Setup::new(view, options);
-    let mut cost = Cost::default();
-    let counts = Counts::default();
-    for band in setup.bands() {
-        let painter = Painter {
-            scene,
-            view,
-            table,
-            options,
-            setup: &setup,
-            watch,
-            counts: &counts,
-        };
-        let image = painter.drawn(&band, &mut cost);
-        let image = image.ok_or(PictureError::Stopped)?;
-        watch.note_tile();
-        cost.bands += 1;
-        take(band.rows.start, image).map_err(PictureError::Sink)?;
-    }
-    counts.add_to(&mut cost);
-    Ok(cost)
+    let painter = Painter::new(scene, view, table, options, watch);
+    painter.by_bands(|band, cost| {
+        let image = painter.drawn(band, cost).ok_or(PictureError::Stopped)?;
+        take(band.rows.start, image).map_err(PictureError::Sink)
+    })
 }
 
-/// Draws a band.
+/// Draws the bands of a picture.
 pub(crate) struct Painter<'a> {
     pub(crate) scene: &'a Scene<'a>,
     pub(crate) view: &'a Viewpoint,
     pub(crate) table: &'a ColorTable,
     pub(crate) options: &'a PictureOptions,
-    pub(crate) setup: &'a Setup,
+    pub(crate) setup: Setup,
     pub(crate) watch: &'a Watch,
-    pub(crate) counts: &'a Counts,
+    counts: Counts,
 }
 
-impl Painter<'_> {
+impl<'a> Painter<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene<'a>,
+        view: &'a Viewpoint,
+        table: &'a ColorTable,
+        options: &'a PictureOptions,
+        watch: &'a Watch,
+    ) -> Self {
+        Self {
+            scene,
+            view,
+            table,
+            options,
+            setup: Setup::new(view, options),
+            watch,
+            counts: Counts::default(),
+        }
+    }
+
+    /// Calls `each` with the bands from the top; returns what they took.
+    pub(crate) fn by_bands<E>(
+        &self,
+        mut each: impl FnMut(&Band, &mut Cost) -> Result<(), PictureError<E>>,
+    ) -> Result<Cost, PictureError<E>> {
+        let mut cost = Cost::default();
+        for band in self.setup.bands() {
+            each(&band, &mut cost)?;
+            self.watch.note_tile();
+            cost.bands += 1;
+        }
+        self.counts.add_to(&mut cost);
+        Ok(cost)
+    }
+
     /// The samples of a band; none if it was stopped.
     pub(crate) fn samples<H: Held, const S: usize>(
         &self,
@@ -109,7 +126,7 @@ impl Painter<'_> {
             rest = others;
             let drawn = batch
                 .par_iter()
-                .map(|job| geometry::drawn(scene, job, &painting, self.counts));
+                .map(|job| geometry::drawn(scene, job, &painting, &self.counts));
             let drawn: Vec<Drawn<'_>> = drawn.flatten().collect();
             if self.watch.is_stopped() {
                 return None;
@@ -151,7 +168,7 @@ impl Painter<'_> {
     ) -> Vec<Option<LitTile>> {
         let Setup {
             projection, lights, ..
-        } = self.setup;
+        } = &self.setup;
         let lit = |(index, tile): (usize, &Option<Tile<H, S>>)| {
             let tile = tile.as_ref().filter(|_| !self.watch.is_stopped())?;
             let corner = grid.corner(index);
@@ -233,7 +250,7 @@ impl Painter<'_> {
 
     /// Pixels of sub-pixels.
     fn gathered(&self, band: &Band, lit: &[Option<LitTile>], shares: Option<&Shares>) -> Image {
-        let Setup { size, scale, .. } = *self.setup;
+        let Setup { size, scale, .. } = self.setup;
         let background = self.options.background;
         let empty = background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
         let behind = background.map(linear);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::bands::{Band, Setup};
 use crate::bytes;
-use crate::cost::{Cost, Counts, PictureError};
+use crate::cost::{Cost, PictureError};
 use crate::fragment::{Fragment, Held};
 use crate::picture::{Painter, pixel_at};
 use crate::sample::Surface;
@@ -88,31 +88,18 @@ pub fn draw_static(
     options: &PictureOptions,
     watch: &Watch,
 ) -> Result<(StaticPicture, Cost), PictureError<std::convert::Infallible>> {
-    let setup = Setup::new(view, options);
-    let counts = Counts::default();
-    let mut cost = Cost::default();
+    let painter = Painter::new(scene, view, table, options, watch);
     let mut matrix = MatrixBuilder::default();
-    for band in setup.bands() {
-        let painter = Painter {
-            scene,
-            view,
-            table,
-            options,
-            setup: &setup,
-            watch,
-            counts: &counts,
-        };
-        let weights = match setup.many_samples {
-            true => weights::<4>(&painter, &band),
-            false => weights::<1>(&painter, &band),
+    let cost = painter.by_bands(|band, _| {
+        let weights = match painter.setup.many_samples {
+            true => weights::<4>(&painter, band),
+            false => weights::<1>(&painter, band),
         };
         matrix.add(&weights.ok_or(PictureError::Stopped)?, 1);
-        watch.note_tile();
-        cost.bands += 1;
-    }
-    counts.add_to(&mut cost);
+        Ok(())
+    })?;
     let picture = StaticPicture {
-        size: setup.size,
+        size: painter.setup.size,
         matrix: matrix.finish(),
         look: options.look,
         background: options.background,
@@ -186,7 +173,7 @@ impl<const S: usize> Gathering<'_, S> {
             projection,
             lights,
             ..
-        } = self.painter.setup;
+        } = &self.painter.setup;
         let share = 1.0 / (scale * scale * S as u32) as f32;
         let mut fixed = [0.0; 2];
         // Sums of this pixel by key, in the order of first use: mostly one or two.

@@ -9,6 +9,8 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::unpacked::base64;
+
 /// WebGPU and WebGL by Chromium's own software, which is part of it.
 const SOFTWARE: [&str; 6] = [
     "--enable-unsafe-webgpu",
@@ -141,6 +143,19 @@ impl Browser {
                await neurotess.ready;
              })()",
         );
+    }
+
+    /// The pixels of a canvas, four bytes each. `canvas`: an expression for it, or for a promise of it.
+    pub(crate) fn pixels(&mut self, canvas: &str) -> Vec<u8> {
+        let text = self.evaluate(&format!(
+            "Promise.resolve({canvas}).then((canvas) => {{
+               const copy = new OffscreenCanvas(canvas.width, canvas.height), context = copy.getContext('2d');
+               context.drawImage(canvas, 0, 0);
+               const {{ data }} = context.getImageData(0, 0, copy.width, copy.height);
+               return btoa(Array.from(data, (byte) => String.fromCharCode(byte)).join(''));
+             }})"
+        ));
+        base64(text.as_str().expect("text"))
     }
 
     /// The value of an expression, or of what it promises.

@@ -82,18 +82,7 @@ impl Opened {
 
     /// The picture of the canvas, without what lies over it.
     fn picture(&mut self) -> Vec<u8> {
-        let text = self.browser.evaluate(
-            "(() => {
-               app.drawWhole();
-               const copy = document.createElement('canvas');
-               [copy.width, copy.height] = [app.canvas.width, app.canvas.height];
-               const context = copy.getContext('2d');
-               context.drawImage(app.canvas, 0, 0);
-               const { data } = context.getImageData(0, 0, copy.width, copy.height);
-               return btoa(Array.from(data, (byte) => String.fromCharCode(byte)).join(''));
-             })()",
-        );
-        base64(text.as_str().expect("text"))
+        self.browser.pixels("(app.drawWhole(), app.canvas)")
     }
 
     /// Hides or shows an entry of the legend, as a click does.

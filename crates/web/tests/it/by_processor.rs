@@ -115,19 +115,10 @@ fn other_colors_of_a_kept_picture_are_as_if_it_were_drawn_anew() {
 
 /// The canvas of the frame, without what lies over it.
 fn picture(opened: &mut Opened) -> Vec<u8> {
-    let text = opened.browser.evaluate(
-        "(async () => {
-           const { app } = document.getElementById('frame').contentWindow.neurotess;
-           await app.loop.settled();
-           const copy = document.createElement('canvas');
-           [copy.width, copy.height] = [app.canvas.width, app.canvas.height];
-           const context = copy.getContext('2d');
-           context.drawImage(app.canvas, 0, 0);
-           const { data } = context.getImageData(0, 0, copy.width, copy.height);
-           return btoa(Array.from(data, (byte) => String.fromCharCode(byte)).join(''));
-         })()",
-    );
-    base64(text.as_str().expect("text"))
+    opened.browser.pixels(
+        "document.getElementById('frame').contentWindow.neurotess.app.loop.settled()
+           .then(() => document.getElementById('frame').contentWindow.neurotess.app.canvas)",
+    )
 }
 
 /// What of the frame's app.

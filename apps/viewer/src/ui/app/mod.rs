@@ -331,7 +331,9 @@ impl Viewer {
             Effect::Reload => self.reload(),
             Effect::Cancel => {
                 self.waiting.clear();
-                self.unprepared = None;
+                if self.unprepared.take().is_some() {
+                    self.state.messages.status = "Stopped before drawing the picture".into();
+                }
                 let all = self
                     .worker
                     .progress()

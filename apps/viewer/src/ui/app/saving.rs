@@ -99,11 +99,10 @@ impl Viewer {
         }
     }
 
-    /// Begins to draw what waited until the stage had the meshes and colors of the document.
+    /// Begins to draw what waited, unless the stage has still other meshes or colors than the document.
     pub(super) fn save_prepared(&mut self) {
-        if self.unprepared.is_some() && self.stage.is_prepared(&self.state) {
-            let request = self.unprepared.take();
-            request.into_iter().for_each(|request| self.save(request));
+        if let Some(request) = self.unprepared.take() {
+            self.save(request);
         }
     }
 
