@@ -113,6 +113,7 @@ impl Stage {
     ) -> Result<(), DeviceError> {
         let Some(task) = &self.resting else {
             if self.lacks_ids() {
+                self.bring_what_shows()?;
                 self.identify(&params)?;
             }
             self.pace.phase = RestPhase::Collects;

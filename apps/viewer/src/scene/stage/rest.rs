@@ -120,17 +120,23 @@ impl Stage {
         params: ViewParams,
         detail: Detail,
     ) -> Result<RestPhase, DeviceError> {
-        if self.pace.rest_mode != RestMode::Explored {
-            let in_view = std::mem::take(&mut self.room.in_view);
-            let brought = self.bring(&in_view);
-            self.room.in_view = in_view;
-            brought?;
-        }
+        self.bring_what_shows()?;
         self.set_rest_detail(&params, detail);
         self.progressive.begin(params, self.steps());
         self.pace.cost_model.begin();
         self.pace.timed = false;
         Ok(RestPhase::Slices)
+    }
+
+    /// Brings what is in view to the device, as far as it fits, if the picture at rest refines it.
+    pub(super) fn bring_what_shows(&mut self) -> Result<(), DeviceError> {
+        if self.pace.rest_mode == RestMode::Explored {
+            return Ok(());
+        }
+        let in_view = std::mem::take(&mut self.room.in_view);
+        let brought = self.bring(&in_view);
+        self.room.in_view = in_view;
+        brought
     }
 
     /// Sets the detail of the picture at rest.
