@@ -24,6 +24,7 @@ __all__ = [
     "Page",
     "WIDGET",
     "diff",
+    "allow_large",
     "color_scale",
     "page",
     "png",

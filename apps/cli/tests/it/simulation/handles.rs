@@ -8,52 +8,84 @@ use super::neurotess;
 #[neurotess_testing::test(needs(neurotess_testing::full, neurotess_testing::shared))]
 fn meshes_of_real_cells_have_no_handles() {
     let allen = "sonata/allen/shared_components/morphologies/Scnn1a_473845048_m.swc";
-    // With these options merging makes handles in one of the two Neurons, unless small holes are filled.
     let loops = "--radii traced --max-aspect 1";
-    let mut filled = 0;
     for (cell, options) in [
         ("swc/Neuron.swc", loops),
         ("h5/Neuron.h5", loops),
         (allen, "--radii equal-area"),
     ] {
-        let folder = tempfile::tempdir().expect("a folder");
-        let run = |arguments: &str| -> Value {
-            let json = neurotess(folder.path(), arguments).expect("it runs");
-            serde_json::from_str::<Value>(&json).expect("JSON")[0].clone()
-        };
         let path = shared_data().join(cell).display().to_string();
-        let mesh = run(&format!(
-            "mesh {path} -o cell.ply --simulation {options} --json"
-        ));
-        let check = run("check cell.ply --json");
+        let (mesh, check) = meshed(&path, options);
         assert_eq!(
             (&check["genus"], &check["components"]),
             (&0.into(), &1.into())
         );
         assert_eq!(check["self_intersections"], 0);
-        let crossings = &mesh["crossings"];
-        assert_eq!(crossings["handles_made"], 0);
-        let warnings = mesh["warnings"].as_array().expect("a list");
-        let told = |code: &str| warnings.iter().find(|warning| warning["code"] == code);
-        assert!(told("handles").is_none());
-        let holes = crossings["filled"].as_array().expect("a list");
-        if options != loops {
-            continue;
-        }
-        filled += holes.len();
-        let counted =
-            told("holes_filled").map_or(0, |warning| warning["count"].as_u64().expect("a count"));
-        assert_eq!(counted, holes.len() as u64, "{path}");
-        for hole in holes {
-            let number = |key: &str| hole[key].as_f64().expect("a number");
-            // Less than the branches there. The largest, 0.4 µm, is beside a soma of 0.06 µm whose neurites are thicker than it
-            // is; it was 0.3 µm before somata were drawn out.
-            assert!((0.0..0.5).contains(&number("girth")), "{hole}");
-            // The same hole, 1.5·10⁻³ µm³, is two millionths of that cell.
-            assert!(number("volume").abs() < 2e-3, "{hole}");
+        assert_eq!(mesh["crossings"]["handles_made"], 0);
+        assert_eq!(warning(&mesh, "handles"), None);
+    }
+}
+
+#[neurotess_testing::test]
+fn holes_between_branches_that_cross_again_and_again_are_filled_and_told() {
+    // A dendrite along x, and one that waves through it; both are 0.4 µm thick and begin at the soma.
+    let straight = (0..33).map(|n| [-4.0 + 0.5 * f64::from(n), 0.0, 0.0]);
+    let to_it = [[-7.0, 4.0, 0.11], [-5.0, 3.5, 0.11], [-3.0, 2.5, 0.11]];
+    let wave = (0..=60).map(|n| {
+        let along = 13.0 * f64::from(n) / 60.0;
+        [along - 2.0, (1.5 * along).cos(), 0.11]
+    });
+    let mut cell = "1 1 -8 0 0 2 -1\n".to_owned();
+    let mut number = 1;
+    for branch in [
+        straight.collect::<Vec<_>>(),
+        to_it.into_iter().chain(wave).collect(),
+    ] {
+        let mut parent = 1;
+        for [x, y, z] in branch {
+            number += 1;
+            cell += &format!("{number} 3 {x} {y} {z} 0.4 {parent}\n");
+            parent = number;
         }
     }
-    assert!(filled > 0, "no cell needs what is tested here");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("waves.swc");
+    std::fs::write(&path, cell).expect("written");
+    let (mesh, check) = meshed(&path.display().to_string(), "--crossings merge");
+    assert_eq!(check["self_intersections"], 0);
+    let holes = mesh["crossings"]["filled"].as_array().expect("a list");
+    assert!(holes.len() >= 4, "{holes:?}");
+    assert_eq!(warning(&mesh, "holes_filled"), Some(holes.len() as u64));
+    // Both begin at the soma: that loop is no hole.
+    assert_eq!(warning(&mesh, "handles"), Some(1));
+    for hole in holes {
+        let girth = hole["girth"].as_f64().expect("a number");
+        // Holes that are filled are at most two circumferences around.
+        assert!(
+            (0.0..4.0 * std::f64::consts::PI * 0.4).contains(&girth),
+            "{hole}"
+        );
+    }
+}
+
+/// What `mesh --simulation` with these options and `check` tell of a cell.
+fn meshed(path: &str, options: &str) -> (Value, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |arguments: &str| -> Value {
+        let json = neurotess(folder.path(), arguments).expect("it runs");
+        serde_json::from_str::<Value>(&json).expect("JSON")[0].clone()
+    };
+    let mesh = run(&format!(
+        "mesh {path} -o cell.ply --simulation {options} --json"
+    ));
+    (mesh, run("check cell.ply --json"))
+}
+
+/// The count of a warning, if it is there.
+fn warning(mesh: &Value, code: &str) -> Option<u64> {
+    let warnings = mesh["warnings"].as_array().expect("a list");
+    let told = warnings.iter().find(|warning| warning["code"] == code)?;
+    told["count"].as_u64()
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::shared))]
