@@ -30,9 +30,6 @@ const REACHES: [(f64, usize); 5] = [(1.5, 0), (2.5, 0), (1.5, 1), (2.5, 2), (4.0
 /// The size of a hull: within the tube, that its faces do not lie on those of the tube.
 const SHRUNK: f64 = 0.96;
 
-/// The longest way over what was left out, in radii of the branch. Those of the real cells are 13 at most, and 4 at level 2.
-const LONGEST: f64 = 30.0;
-
 /// Joins pieces of the `given` surface that merging cut off, and tells each.
 pub(crate) fn rejoin(
     work: &mut Work,
@@ -190,10 +187,9 @@ impl Given {
                 let back = |&v: &u32| Some(from[v as usize]).filter(|&v| v != u32::MAX);
                 return Some(std::iter::successors(Some(vertex), back).collect());
             }
-            let longest = LONGEST * f64::from(self.work.vertices[vertex as usize].radius);
             for &next in self.neighbors(vertex) {
                 let further = so_far + self.distance(vertex, next);
-                if further < longest && further < length[next as usize] {
+                if further < length[next as usize] {
                     length[next as usize] = further;
                     from[next as usize] = vertex;
                     open.push(key(further, next));
