@@ -80,7 +80,9 @@ pub fn union_stoppable(
     let most = MAX_GROWTH * pairs.len() + work.triangles.len();
     pairs = merge(&mut work, pairs, most, options, &mut report, &check)?;
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
-        report.joined = rejoin(&mut work, mesh, options, &check)?;
+        let (joined, hidden) = rejoin(&mut work, mesh, options, &check)?;
+        report.joined = joined;
+        report.dropped.extend(hidden);
         report.cut_off = still_cut_off(&work);
     }
     if options.fill > 0.0 && pairs.is_empty() {

@@ -19,10 +19,7 @@ pub(crate) struct Region {
 /// The faces of `pairs` and `rings` rings of neighbors. Neighbors are told by position, so that sheets that
 /// merely touch come along.
 pub(crate) fn around(work: &Work, pairs: &[[u32; 2]], rings: u32) -> Region {
-    let mut crossing = vec![false; work.triangles.len()];
-    for &face in pairs.iter().flatten() {
-        crossing[face as usize] = true;
-    }
+    let crossing = crossing(work, pairs);
     let mut has = crossing.clone();
     for _ in 0..rings {
         let inner: HashSet<[u32; 3]> = work
@@ -41,6 +38,24 @@ pub(crate) fn around(work: &Work, pairs: &[[u32; 2]], rings: u32) -> Region {
             *has |= face.iter().any(|&corner| near[corner as usize]);
         }
     }
+    region(&crossing, has)
+}
+
+/// All faces.
+pub(crate) fn everything(work: &Work, pairs: &[[u32; 2]]) -> Region {
+    region(&crossing(work, pairs), vec![true; work.triangles.len()])
+}
+
+/// For each face whether it is of one of the pairs.
+fn crossing(work: &Work, pairs: &[[u32; 2]]) -> Vec<bool> {
+    let mut crossing = vec![false; work.triangles.len()];
+    for &face in pairs.iter().flatten() {
+        crossing[face as usize] = true;
+    }
+    crossing
+}
+
+fn region(crossing: &[bool], has: Vec<bool>) -> Region {
     let faces: Vec<u32> = (0..has.len() as u32).filter(|&n| has[n as usize]).collect();
     let crossing = faces.iter().map(|&face| crossing[face as usize]).collect();
     Region {

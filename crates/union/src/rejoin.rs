@@ -18,8 +18,8 @@ use neurotess_mesh::{SurfaceMesh, SurfaceVertex, Topology, measure};
 use crate::body::{Body, handles, is_sound};
 use crate::engine::hull;
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::cut_off;
-use crate::report::Joined;
+use crate::parts::{cut_off, drop_hidden};
+use crate::report::{Joined, Part};
 use crate::work::Work;
 
 /// How far the surface around a way reaches that is taken into the hull, in radii of the branch, and in edges at
@@ -27,16 +27,17 @@ use crate::work::Work;
 /// within that.
 const REACHES: [(f64, usize); 5] = [(1.5, 0), (2.5, 0), (1.5, 1), (2.5, 2), (4.0, 4)];
 
-/// The size of a hull: within the tube, that its faces do not lie on those of the tube.
-const SHRUNK: f64 = 0.96;
+/// Sizes of a hull, in the order in which they are tried: within the tube, that its faces do not lie on those of the tube;
+/// and beyond it, since the smaller one does not reach an end that is far thinner than the hull is long.
+const SIZES: [f64; 2] = [0.96, 1.04];
 
-/// Joins pieces of the `given` surface that merging cut off, and tells each.
+/// Joins pieces of the `given` surface that merging cut off; tells each, and what lies within the joints and is left out.
 pub(crate) fn rejoin(
     work: &mut Work,
     given: &SurfaceMesh,
     options: &UnionOptions,
     check: &dyn Fn() -> Result<(), UnionError>,
-) -> Result<Vec<Joined>, UnionError> {
+) -> Result<(Vec<Joined>, Vec<Part>), UnionError> {
     let given = Given::new(given)?;
     let mut joined = Vec::new();
     let mut now = work.shape();
@@ -44,7 +45,12 @@ pub(crate) fn rejoin(
         now = shape;
         joined.push(one);
     }
-    Ok(joined)
+    // A hull may hold other pieces, which cross nothing.
+    let hidden = match joined.is_empty() {
+        true => Vec::new(),
+        false => drop_hidden(work, &[]),
+    };
+    Ok((joined, hidden))
 }
 
 /// Joins one piece, if there is one that can be joined; returns the shape after.
@@ -62,14 +68,15 @@ fn join_one(
             let owners = owners(work, &numbers, given.work.vertices.len(), moved);
             given.way(&owners, piece)
         });
-        let tries = ways
+        let ways = || ways.iter().flatten();
+        let tries = SIZES
             .iter()
-            .flatten()
-            .flat_map(|way| REACHES.map(|reach| (way, reach)));
-        for (way, reach) in tries {
+            .flat_map(|&size| ways().map(move |way| (size, way)))
+            .flat_map(|(size, way)| REACHES.map(|reach| (size, way, reach)));
+        for (size, way, reach) in tries {
             check()?;
             let names = given.around(way, reach);
-            let Some(body) = hull_of(&names) else {
+            let Some(body) = hull_of(&names, size) else {
                 continue;
             };
             let Some(tried) = body.merged(work, &names, part, options, check)? else {
@@ -110,16 +117,16 @@ fn owners(work: &Work, numbers: &[u32], given: usize, moved: bool) -> Vec<Option
     owners
 }
 
-/// The hull of vertices, a little smaller.
-fn hull_of(names: &[SurfaceVertex]) -> Option<Body> {
+/// The hull of vertices, of some times its size.
+fn hull_of(names: &[SurfaceVertex], size: f64) -> Option<Body> {
     let points: Vec<DVec3> = names.iter().map(|name| name.position.as_dvec3()).collect();
     let middle = points.iter().sum::<DVec3>() / points.len() as f64;
     let (corners, faces) = hull(&points)?;
-    let shrunk = corners
+    let sized = corners
         .into_iter()
-        .map(|corner| middle + SHRUNK * (corner - middle));
+        .map(|corner| middle + size * (corner - middle));
     Some(Body {
-        points: shrunk.collect(),
+        points: sized.collect(),
         faces,
     })
 }

@@ -4,7 +4,7 @@ use neurotess_mesh::{measure, self_intersections_of};
 
 use crate::options::{UnionError, UnionOptions};
 use crate::parts::{drop_splinters, least_volume};
-use crate::region::around;
+use crate::region::{Region, around, everything};
 use crate::report::UnionReport;
 use crate::splice::{Fault, splice};
 use crate::tidy::tidy;
@@ -19,8 +19,12 @@ const EXACT_ROUNDS: u32 = 2;
 /// come to nothing: `simple.asc` with its points moved by 0.6 radii has 68 after a round.
 pub(crate) const MAX_GROWTH: usize = 4;
 
-/// Most rings of neighbors that an arrangement is tried with.
+/// Most rings of neighbors that an arrangement is tried with, before it is tried with the whole surface.
 const MAX_RINGS: u32 = 4;
+
+/// How often what crosses is pressed in, by a thousandth of its radius more each time, where even the whole surface could
+/// not be arranged.
+const MAX_PRESSES: u32 = 4;
 
 /// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. It is given up once a round leaves
 /// more than `most` pairs: what multiplies takes ever more time and memory, and comes to nothing. `check` is asked between
@@ -46,7 +50,7 @@ pub(crate) fn merge(
             }
         }
         let faces = touch::faces(work, &pairs);
-        cut(work, &pairs)?;
+        cut(work, pairs, report, check, &splice)?;
         check()?;
         let last = report.rounds == options.rounds;
         mend(work, if last { 0.0 } else { needles }, report);
@@ -70,20 +74,50 @@ pub(crate) fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
     }
 }
 
-/// Replaces the faces around crossings by their union.
-fn cut(work: &mut Work, pairs: &[[u32; 2]]) -> Result<(), UnionError> {
-    let mut fault = None;
+/// Replaces the faces around crossings by their union. Where that fails, what crosses is pressed in a little, and cut
+/// where it then crosses. `splice`: [`splice()`], but in tests.
+fn cut(
+    work: &mut Work,
+    mut pairs: Vec<[u32; 2]>,
+    report: &mut UnionReport,
+    check: &dyn Fn() -> Result<(), UnionError>,
+    splice: &dyn Fn(&mut Work, &Region) -> Result<(), Fault>,
+) -> Result<(), UnionError> {
+    let mut times = 0;
+    loop {
+        let Err(fault) = cut_at(work, &pairs, splice) else {
+            return Ok(());
+        };
+        if times == MAX_PRESSES {
+            return Err(UnionError::Failed(match fault {
+                Fault::Engine(text) => text,
+                Fault::Open => "what is kept does not close".into(),
+                Fault::Inconsistent => "winding numbers contradict one another".into(),
+            }));
+        }
+        check()?;
+        times += 1;
+        report.parted += touch::press_all(work, &pairs, f64::from(times));
+        // All faces that crossed have moved.
+        pairs = crossings_of_changed(work);
+    }
+}
+
+/// Replaces the faces around crossings, or all faces, by their union.
+fn cut_at(
+    work: &mut Work,
+    pairs: &[[u32; 2]],
+    splice: &dyn Fn(&mut Work, &Region) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    if pairs.is_empty() {
+        return Ok(());
+    }
     for rings in 1..=MAX_RINGS {
-        match splice(work, &around(work, pairs, rings)) {
-            Ok(()) => return Ok(()),
-            Err(new) => fault = Some(new),
+        if splice(work, &around(work, pairs, rings)).is_ok() {
+            return Ok(());
         }
     }
-    Err(UnionError::Failed(match fault {
-        Some(Fault::Engine(text)) => text,
-        Some(Fault::Open) => "what is kept does not close".into(),
-        Some(Fault::Inconsistent) | None => "winding numbers contradict one another".into(),
-    }))
+    splice(work, &everything(work, pairs))
 }
 
 /// Makes a fair surface of what the cut has left.
@@ -97,5 +131,76 @@ fn mend(work: &mut Work, needles: f64, report: &mut UnionReport) {
         let tidied = tidy(work, needles);
         report.collapsed += tidied.collapsed;
         report.flipped += tidied.flipped;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use neurotess_mesh::{SurfaceMesh, SurfaceVertex, self_intersections};
+
+    use super::*;
+
+    /// Two tetrahedra of a radius of 1 µm, one through the other.
+    fn crossing() -> Work {
+        let mut mesh = SurfaceMesh::default();
+        for shift in [0.0_f32, 0.3] {
+            let first = mesh.vertices.len() as u32;
+            for [x, y, z] in [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]] {
+                mesh.vertices.push(SurfaceVertex {
+                    position: [x + shift, y + 0.9 * shift, z + 0.8 * shift].into(),
+                    radius: 1.0,
+                    ..SurfaceVertex::default()
+                });
+            }
+            let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+            let faces = faces.map(|face| face.map(|corner| first + corner));
+            mesh.faces.triangles.extend(faces);
+        }
+        Work::new(&mesh).expect("a mesh")
+    }
+
+    /// Cuts where the first `failures` tries fail.
+    fn cut_after(failures: u32) -> (Work, UnionReport, Result<(), UnionError>) {
+        let mut work = crossing();
+        let pairs = self_intersections(&work.positions(), &work.faces());
+        let left = std::cell::Cell::new(failures);
+        let fails = |work: &mut Work, region: &Region| match left.get() {
+            0 => splice(work, region),
+            more => {
+                left.set(more - 1);
+                Err(Fault::Open)
+            }
+        };
+        let mut report = UnionReport::default();
+        let done = cut(&mut work, pairs, &mut report, &|| Ok(()), &fails);
+        (work, report, done)
+    }
+
+    #[test]
+    fn where_a_cut_fails_a_wider_one_or_a_thousandth_of_the_radius_helps() {
+        let (exact, report, done) = cut_after(0);
+        assert_eq!((report.parted, done), (0, Ok(())));
+        let volume = |work: &Work| measure(&work.positions(), &work.faces()).volume;
+        for failures in [MAX_RINGS, MAX_RINGS + 1, 3 * (MAX_RINGS + 1)] {
+            let (work, report, done) = cut_after(failures);
+            assert_eq!(done, Ok(()), "{failures}");
+            let presses = failures / (MAX_RINGS + 1);
+            assert_eq!(report.parted > 0, presses > 0, "{failures}");
+            let shape = work.shape();
+            assert!(shape.closed && shape.oriented && shape.vertex_manifold);
+            assert_eq!(shape.components, 1);
+            assert!(self_intersections(&work.positions(), &work.faces()).is_empty());
+            // Six micrometers squared at most, moved by thousandths of one.
+            let moved = volume(&exact) - volume(&work);
+            let most = 6e-3 * f64::from(presses * (presses + 1) / 2);
+            assert!((0.0..=most).contains(&moved), "{failures}: {moved}");
+        }
+    }
+
+    #[test]
+    fn what_can_be_cut_in_no_way_is_an_error() {
+        let (_, _, done) = cut_after(u32::MAX);
+        let told = UnionError::Failed("what is kept does not close".into());
+        assert_eq!(done, Err(told));
     }
 }
