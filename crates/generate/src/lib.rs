@@ -173,8 +173,8 @@ fn labeled(
     if let Some(message) = unused_kinds([morphology], options.kinds.as_deref()) {
         warnings.add("types_unused", None, &message);
     }
-    let as_neurites = soma::as_neurites(morphology, options, &mut warnings);
-    let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref(), &as_neurites);
+    let as_neurites = soma::AsNeurites::new(morphology, options, &mut warnings);
+    let mut skeleton = Skeleton::new(morphology, options.kinds.as_deref(), &as_neurites.is);
     mend::mend_radii(&mut skeleton, options.unknown_radius, &mut warnings);
     mend::thicken(&mut skeleton, options.least_radius, &mut warnings);
     coordinates::check(morphology, &skeleton, &mut warnings)?;
@@ -182,7 +182,7 @@ fn labeled(
     mend::merge_coincident(&mut skeleton, &mut warnings);
     repeated::leave_out(&mut skeleton, &mut warnings);
     let mut soma_spheres =
-        soma::soma_spheres(morphology, &skeleton, &as_neurites, options, &mut warnings);
+        soma::soma_spheres(morphology, &skeleton, as_neurites, options, &mut warnings);
     let hubs = hubs::find(&mut skeleton, &mut soma_spheres, options, &mut warnings);
     let labels = labels(morphology, &hubs);
     stubs::measure(&skeleton, &mut soma_spheres, options);

@@ -22,7 +22,7 @@ mod surface;
 mod trials;
 mod warp;
 
-pub(crate) use reference::{as_neurites, soma_spheres};
+pub(crate) use reference::{AsNeurites, soma_spheres};
 pub(crate) use site::collar;
 pub(crate) use soma_surface::SomaSurface;
 pub(crate) use somata::{BuiltSoma, build};

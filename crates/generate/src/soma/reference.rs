@@ -10,29 +10,41 @@ use crate::warning::Warnings;
 use crate::{GenerateOptions, SomaMethod};
 
 /// Which somata were traced as neurites are, and are meshed as such.
-pub(crate) fn as_neurites(
-    morphology: &Morphology,
-    options: &GenerateOptions,
-    warnings: &mut Warnings,
-) -> Vec<bool> {
-    let shaped = shaped(morphology, options);
-    let is_like_neurite = |(index, soma): (usize, &Soma)| {
-        let like = options.soma == SomaMethod::Fem
-            && shaped != Some(index)
-            && soma.kind == SomaKind::Cylinders
-            && soma.radius > 0.0
-            && SomaShape::of(soma).is_like_neurite();
-        if like {
-            warnings.add(
-                "soma_as_neurite",
-                soma.samples.first().map(|sample| sample.id),
-                "soma was traced along branches, or is long and bent: meshed as a thick neurite",
-            );
+#[derive(Debug, Default)]
+pub(crate) struct AsNeurites {
+    /// By soma.
+    pub(crate) is: Vec<bool>,
+    /// The shapes of those that might have been and are not: to find one takes longer than to read a small cell.
+    shapes: Vec<Option<SomaShape>>,
+}
+
+impl AsNeurites {
+    pub(crate) fn new(
+        morphology: &Morphology,
+        options: &GenerateOptions,
+        warnings: &mut Warnings,
+    ) -> Self {
+        let shaped = shaped(morphology, options);
+        let mut found = Self::default();
+        for (index, soma) in morphology.somata.iter().enumerate() {
+            let may_be = options.soma == SomaMethod::Fem
+                && shaped != Some(index)
+                && soma.kind == SomaKind::Cylinders
+                && soma.radius > 0.0;
+            let shape = may_be.then(|| SomaShape::of(soma));
+            let is = shape.as_ref().is_some_and(SomaShape::is_like_neurite);
+            if is {
+                warnings.add(
+                    "soma_as_neurite",
+                    soma.samples.first().map(|sample| sample.id),
+                    "soma was traced along branches, or is long and bent: meshed as a thick neurite",
+                );
+            }
+            found.is.push(is);
+            found.shapes.push(shape.filter(|_| !is));
         }
-        like
-    };
-    let somata = morphology.somata.iter().enumerate();
-    somata.map(is_like_neurite).collect()
+        found
+    }
 }
 
 /// The soma that the given shape stands for.
@@ -48,7 +60,7 @@ fn shaped(morphology: &Morphology, options: &GenerateOptions) -> Option<usize> {
 pub(crate) fn soma_spheres(
     morphology: &Morphology,
     skeleton: &Skeleton,
-    as_neurites: &[bool],
+    as_neurites: AsNeurites,
     options: &GenerateOptions,
     warnings: &mut Warnings,
 ) -> Vec<Option<SomaSphere>> {
@@ -60,8 +72,8 @@ pub(crate) fn soma_spheres(
         SomaMethod::Profile => PROFILE_REACH,
         SomaMethod::None => return vec![None; morphology.somata.len()],
     };
-    let soma_sphere = |(index, soma): (usize, &Soma)| {
-        if as_neurites[index] {
+    let soma_sphere = |((index, soma), found): ((usize, &Soma), Option<SomaShape>)| {
+        if as_neurites.is[index] {
             return None;
         }
         let (center, radius) = (soma.center.as_dvec3(), f64::from(soma.radius));
@@ -87,19 +99,15 @@ pub(crate) fn soma_spheres(
                 let radius = radius_from_neurites(skeleton, &starts[index], center);
                 SomaShape::sphere(center, radius)
             }
-            SomaMethod::Fem => SomaShape::of(soma),
+            SomaMethod::Fem => found.unwrap_or_else(|| SomaShape::of(soma)),
             SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => {
                 SomaShape::sphere(center, radius)
             }
         };
         Some(SomaSphere::new(Arc::new(shape), options.soma_scale, reach))
     };
-    morphology
-        .somata
-        .iter()
-        .enumerate()
-        .map(soma_sphere)
-        .collect()
+    let somata = morphology.somata.iter().enumerate();
+    somata.zip(as_neurites.shapes).map(soma_sphere).collect()
 }
 
 fn hidden_from_center(hidden: Hidden) -> String {

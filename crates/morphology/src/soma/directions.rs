@@ -110,18 +110,26 @@ impl ByDirection {
         let units = Directions::new(count).units;
         let logarithms: Vec<f64> = units.iter().map(|&unit| distance(unit).ln()).collect();
         let least = (3.0 * width).cos();
-        let mean = |unit: &DVec3| {
-            let mut sums = [0.0; 2];
-            for (other, logarithm) in units.iter().zip(&logarithms) {
+        let mut sums = vec![[0.0; 2]; units.len()];
+        // Two directions weigh as much for one another; each sum is over all directions in their order.
+        for (i, unit) in units.iter().enumerate() {
+            for (j, other) in units.iter().enumerate().skip(i) {
                 let cosine = unit.dot(*other);
                 if cosine > least {
                     let weight = ((cosine - 1.0) / (width * width)).exp();
-                    sums = [sums[0] + weight * logarithm, sums[1] + weight];
+                    let mut add = |to: usize, from: usize| {
+                        sums[to][0] += weight * logarithms[from];
+                        sums[to][1] += weight;
+                    };
+                    add(i, j);
+                    if i != j {
+                        add(j, i);
+                    }
                 }
             }
-            (sums[0] / sums[1]).exp()
-        };
-        Self::new(count, units.iter().map(mean).collect())
+        }
+        let means = sums.into_iter().map(|[sum, weight]| (sum / weight).exp());
+        Self::new(count, means.collect())
     }
 
     /// The distance in a unit direction.
