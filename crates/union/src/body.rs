@@ -6,7 +6,7 @@ use neurotess_mesh::{SurfaceVertex, Topology, self_intersections_of};
 use crate::options::{UnionError, UnionOptions};
 use crate::report::UnionReport;
 use crate::rounds::{MAX_GROWTH, merge};
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// A closed body whose faces look outwards.
 pub(crate) struct Body {

@@ -41,31 +41,16 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod arrange;
 mod body;
-mod cells;
-mod diagonals;
-mod edits;
-mod engine;
-mod improve;
+mod handles;
+mod mend;
 mod merge;
 mod options;
-mod parts;
-mod places;
-mod press;
-mod region;
-mod rejoin;
 mod report;
 mod rounds;
-mod sheets;
-mod smooth;
-mod splice;
-mod stars;
-mod tidy;
-mod touch;
-mod tunnels;
-mod vicinity;
-mod winding;
-mod work;
+mod solver;
+mod surface;
 
 pub use merge::{Union, crossing_places, union, union_stoppable};
 pub use options::{UnionError, UnionOptions};

@@ -5,17 +5,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_mesh::{SurfaceMesh, Topology, measure, search_self_intersections_stoppable};
 
-use crate::improve::improve;
+use crate::handles::fill::fill;
+use crate::handles::rejoin::rejoin;
+use crate::mend::parts::{drop_hidden, still_cut_off};
+use crate::mend::places::places;
+use crate::mend::press::press_in;
+use crate::mend::smooth::{renew_normals, smooth};
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::{drop_hidden, still_cut_off};
-use crate::places::places;
-use crate::press::press_in;
-use crate::rejoin::rejoin;
 use crate::report::{Place, UnionReport};
-use crate::rounds::{MAX_GROWTH, crossings_of_changed, merge};
-use crate::smooth::{renew_normals, smooth};
-use crate::tunnels::fill;
-use crate::work::Work;
+use crate::rounds::{MAX_GROWTH, merge};
+use crate::solver::improve::improve;
+use crate::surface::work::Work;
 
 /// A surface without crossings.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +101,7 @@ pub fn union_stoppable(
     check()?;
     let of_changed = match searched {
         true => 0,
-        false => crossings_of_changed(&work).len(),
+        false => work.crossings_of_changed().len(),
     };
     report.pairs = of_changed + crossings_that_stayed(&work, &crossed);
     report.faces_changed = changed(mesh, &work);

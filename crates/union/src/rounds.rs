@@ -1,15 +1,15 @@
 //! Cut, mend, check, and once more, until nothing crosses.
 
-use neurotess_mesh::{measure, self_intersections_of};
+use neurotess_mesh::measure;
 
+use crate::arrange::region::{Region, around, everything};
+use crate::arrange::splice::{Fault, splice};
+use crate::mend::parts::{drop_splinters, least_volume};
+use crate::mend::tidy::tidy;
+use crate::mend::touch;
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::{drop_splinters, least_volume};
-use crate::region::{Region, around, everything};
 use crate::report::UnionReport;
-use crate::splice::{Fault, splice};
-use crate::tidy::tidy;
-use crate::touch;
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Rounds after which crossings are no longer cut only, but pressed apart too. Real cells need two at most.
 const EXACT_ROUNDS: u32 = 2;
@@ -44,7 +44,7 @@ pub(crate) fn merge(
         if report.rounds > EXACT_ROUNDS {
             let times = f64::from(report.rounds - EXACT_ROUNDS);
             report.parted += touch::press_all(work, &pairs, times);
-            pairs = crossings_of_changed(work);
+            pairs = work.crossings_of_changed();
             if pairs.is_empty() {
                 break;
             }
@@ -56,22 +56,14 @@ pub(crate) fn merge(
         mend(work, if last { 0.0 } else { needles }, report);
         // What is finer stays: collapsing may be what made the new crossings.
         needles *= 0.6;
-        pairs = crossings_of_changed(work);
+        pairs = work.crossings_of_changed();
         let pressed = touch::press(work, &pairs, &faces);
         if pressed > 0 {
             report.parted += pressed;
-            pairs = crossings_of_changed(work);
+            pairs = work.crossings_of_changed();
         }
     }
     Ok(pairs)
-}
-
-/// Crossings of faces that are not of the input: the others' were all cut.
-pub(crate) fn crossings_of_changed(work: &Work) -> Vec<[u32; 2]> {
-    match work.changed_faces() {
-        none if none.is_empty() => Vec::new(),
-        changed => self_intersections_of(&work.positions(), &work.faces(), &changed),
-    }
 }
 
 /// Replaces the faces around crossings by their union. Where that fails, what crosses is pressed in a little, and cut
@@ -99,7 +91,7 @@ fn cut(
         times += 1;
         report.parted += touch::press_all(work, &pairs, f64::from(times));
         // All faces that crossed have moved.
-        pairs = crossings_of_changed(work);
+        pairs = work.crossings_of_changed();
     }
 }
 

@@ -10,12 +10,11 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::diagonals::choose_diagonals;
-use crate::edits::{Edit, Edits, sharpness};
-use crate::press::press_in;
-use crate::rounds::crossings_of_changed;
-use crate::stars::Stars;
-use crate::work::Work;
+use crate::mend::press::press_in;
+use crate::solver::diagonals::choose_diagonals;
+use crate::solver::edits::{Edit, Edits, sharpness};
+use crate::surface::stars::Stars;
+use crate::surface::work::Work;
 
 /// What was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,7 +57,7 @@ pub(crate) fn improve(work: &mut Work, least: f64) -> Improved {
         let mut tried = work.clone();
         choose_diagonals(&mut tried, &fixed);
         let mut done = passes(&mut tried, goal, &fixed);
-        let mut crossing = crossings_of_changed(&tried);
+        let mut crossing = tried.crossings_of_changed();
         let mut near = vec![false; work.vertices.len()];
         for &face in crossing.iter().flatten() {
             for corner in tried.triangles[face as usize] {

@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use crate::region::key;
-use crate::work::Work;
+use crate::arrange::region::key;
+use crate::surface::work::Work;
 
 /// How far a vertex goes towards the middle of its own neighbors, try after try: of the way there, but at most
 /// of the radius.

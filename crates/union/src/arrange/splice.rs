@@ -7,11 +7,11 @@
 use glam::DVec3;
 use neurotess_mesh::Forest;
 
-use crate::cells::{Wall, cell_windings, turns_alike, walls};
-use crate::engine::{Arrangement, arrange};
-use crate::region::Region;
-use crate::sheets::{Kept, Sheets};
-use crate::work::Work;
+use crate::arrange::cells::{Wall, cell_windings, turns_alike, walls};
+use crate::arrange::engine::{Arrangement, arrange};
+use crate::arrange::region::Region;
+use crate::arrange::sheets::{Kept, Sheets};
+use crate::surface::work::Work;
 
 /// Why a region could not be replaced. With more rings of neighbors it may.
 #[derive(Debug)]

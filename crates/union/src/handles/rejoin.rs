@@ -15,12 +15,12 @@ use std::collections::{BTreeSet, BinaryHeap};
 use glam::DVec3;
 use neurotess_mesh::{SurfaceMesh, SurfaceVertex, Topology, measure};
 
+use crate::arrange::hull;
 use crate::body::{Body, handles, is_sound};
-use crate::engine::hull;
+use crate::mend::parts::{cut_off, drop_hidden};
 use crate::options::{UnionError, UnionOptions};
-use crate::parts::{cut_off, drop_hidden};
 use crate::report::{Joined, Part};
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// How far the surface around a way reaches that is taken into the hull, in radii of the branch, and in edges at
 /// least: what is tried, in this order. A ring of the tube is two radii wide, but where edges are long few vertices are

@@ -4,8 +4,8 @@
 use glam::DVec3;
 use neurotess_mesh::SurfaceVertex;
 
-use crate::stars::{Stars, normal};
-use crate::work::Work;
+use crate::surface::stars::{Stars, normal};
+use crate::surface::work::Work;
 
 /// Sides up to this many times what counts as bad are collapsed. With 6 for flat faces that cannot be flipped,
 /// IF4 at level 2 had 171 instead of 194 angles below half a degree, but vd130423 had to be cut three times

@@ -6,7 +6,7 @@ use glam::DVec3;
 use neurotess_mesh::Forest;
 
 use crate::report::{Kin, Place};
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// The places of pairs of faces that cross.
 pub(crate) fn places(work: &Work, pairs: &[[u32; 2]]) -> Vec<Place> {

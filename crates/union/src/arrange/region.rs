@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::Vec3;
 
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Faces around crossings.
 pub(crate) struct Region {

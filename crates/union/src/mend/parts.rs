@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
+use crate::arrange::winding::{Query, windings};
 use crate::report::{Part, Why};
-use crate::winding::{Query, windings};
-use crate::work::{Work, components};
+use crate::surface::work::{Work, components};
 
 /// A component, with sums over its faces.
 #[derive(Clone, Default)]

@@ -6,10 +6,10 @@
 
 use neurotess_mesh::Forest;
 
-use crate::engine::{Arrangement, Piece};
-use crate::region::Region;
-use crate::winding::{Query, windings};
-use crate::work::Work;
+use crate::arrange::engine::{Arrangement, Piece};
+use crate::arrange::region::Region;
+use crate::arrange::winding::{Query, windings};
+use crate::surface::work::Work;
 
 /// Pieces in one place: most often one, more where faces coincide.
 pub(crate) struct Wall {

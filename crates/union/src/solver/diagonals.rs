@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::stars::normal;
-use crate::work::Work;
+use crate::surface::stars::normal;
+use crate::surface::work::Work;
 
 /// By how much the angles across a diagonal may exceed 180° (0.02°): those of a rectangle do by rounding. With 0.5°
 /// TetGen misses four times as many edges.

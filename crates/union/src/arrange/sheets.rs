@@ -1,16 +1,16 @@
 //! From pieces to faces with vertices of their own.
 //!
 //! Where the union touches itself along an edge or in a vertex, sheets are told apart: each **fan** of faces
-//! around a vertex has a vertex of its own, at the same position; [`crate::touch`] parts them.
+//! around a vertex has a vertex of its own, at the same position; [`crate::mend::touch`] parts them.
 
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 use neurotess_mesh::{Forest, SurfaceVertex};
 
-use crate::engine::{Arrangement, HalfFace};
-use crate::region::Region;
-use crate::work::Work;
+use crate::arrange::engine::{Arrangement, HalfFace};
+use crate::arrange::region::Region;
+use crate::surface::work::Work;
 
 /// A piece that is kept.
 pub(crate) struct Kept {

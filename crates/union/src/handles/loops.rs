@@ -8,8 +8,8 @@ use neurotess_mesh::Forest;
 use rayon::prelude::*;
 
 use super::patch::{Loop, Patch};
-use crate::winding::{Query, windings};
-use crate::work::Work;
+use crate::arrange::winding::{Query, windings};
+use crate::surface::work::Work;
 
 /// Most vertices of a seam through which loops are looked for.
 const STARTS: usize = 48;

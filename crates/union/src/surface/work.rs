@@ -1,7 +1,9 @@
 //! The surface as it is worked on.
 
 use glam::{DVec3, Vec3};
-use neurotess_mesh::{Faces, Forest, SurfaceMesh, SurfaceVertex, Topology, topology};
+use neurotess_mesh::{
+    Faces, Forest, SurfaceMesh, SurfaceVertex, Topology, self_intersections_of, topology,
+};
 
 use crate::UnionError;
 
@@ -127,6 +129,14 @@ impl Work {
     pub(crate) fn changed_faces(&self) -> Vec<u32> {
         let faces = 0..self.triangles.len() as u32;
         faces.filter(|&face| self.is_changed(face)).collect()
+    }
+
+    /// Crossings of faces that are not of the input: the others' were all cut.
+    pub(crate) fn crossings_of_changed(&self) -> Vec<[u32; 2]> {
+        match self.changed_faces() {
+            none if none.is_empty() => Vec::new(),
+            changed => self_intersections_of(&self.positions(), &self.faces(), &changed),
+        }
     }
 
     /// A set of vertices together with those up to `rings` edges away.

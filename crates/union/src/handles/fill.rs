@@ -13,22 +13,16 @@
 //! **Practice.** Only surfaces with more handles than before are looked at. Each body is tried on a copy. It is kept
 //! if there are fewer handles, as many components as before, and nothing crosses.
 
-mod blend;
-mod loops;
-mod patch;
-mod plug;
-
-use glam::DVec3;
 use neurotess_mesh::{SurfaceVertex, Topology, genus_by_component, measure};
 
+use super::blend::blend;
+use super::loops::{least_radius, middle, seams, tunnels};
+use super::patch::Loop;
+use super::plug::Ellipsoid;
 use crate::body::{handles, is_sound};
 use crate::options::{UnionError, UnionOptions};
 use crate::report::Filled;
-use crate::work::Work;
-use blend::blend;
-use loops::{least_radius, middle, seams, tunnels};
-use patch::Loop;
-use plug::Ellipsoid;
+use crate::surface::work::Work;
 
 /// Sizes of bodies that are tried: by what just holds the loop, and at least of the radius there. Their faces are
 /// flat, so that 1 would not hold it. The first was enough in the real cells.
@@ -129,12 +123,5 @@ fn told(before: &Work, after: &Work, around: &Loop) -> Filled {
         section: beside.section,
         girth: around.length,
         volume: more - volume,
-    }
-}
-
-impl Loop {
-    fn points(&self, work: &Work) -> Vec<DVec3> {
-        let points = self.vertices.iter();
-        points.map(|&v| work.position(v).as_dvec3()).collect()
     }
 }

@@ -116,7 +116,7 @@ mod tests {
     use neurotess_mesh::{SurfaceMesh, SurfaceVertex, measure, topology};
 
     use super::*;
-    use crate::work::Work;
+    use crate::surface::work::Work;
 
     #[test]
     fn a_body_holds_its_loop_and_looks_outwards() {

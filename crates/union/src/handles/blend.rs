@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 
-use crate::rounds::crossings_of_changed;
-use crate::smooth::relaxed;
-use crate::stars::normal;
-use crate::tidy::tidy;
-use crate::work::Work;
+use crate::mend::smooth::relaxed;
+use crate::mend::tidy::tidy;
+use crate::surface::stars::normal;
+use crate::surface::work::Work;
 
 /// Steps of smoothing, the most that makes nothing cross and nothing fold. Forty make a cap over a hole about as
 /// flat as it can be.
@@ -26,7 +25,7 @@ pub(super) fn blend(work: Work, first: u32, needles: f64) -> Work {
     if needles > 0.0 {
         tidy(&mut tidied, needles);
     }
-    let work = match crossings_of_changed(&tidied).is_empty() {
+    let work = match tidied.crossings_of_changed().is_empty() {
         true => tidied,
         false => work,
     };
@@ -48,7 +47,7 @@ pub(super) fn blend(work: Work, first: u32, needles: f64) -> Work {
             smoothed.vertices[vertex as usize].position = position;
         }
         let fair = self::folds(&smoothed, &faces) <= folds;
-        if fair && crossings_of_changed(&smoothed).is_empty() {
+        if fair && smoothed.crossings_of_changed().is_empty() {
             return smoothed;
         }
     }

@@ -9,9 +9,10 @@
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 
+use glam::DVec3;
 use neurotess_mesh::Forest;
 
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Faces with vertices of their own: one that two fans of these faces have in common is two.
 pub(super) struct Patch {
@@ -38,6 +39,14 @@ pub(super) struct Loop {
     pub(super) vertices: Vec<u32>,
     /// µm.
     pub(super) length: f64,
+}
+
+impl Loop {
+    /// Its corners.
+    pub(super) fn points(&self, work: &Work) -> Vec<DVec3> {
+        let points = self.vertices.iter();
+        points.map(|&v| work.position(v).as_dvec3()).collect()
+    }
 }
 
 impl Patch {

@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::Vec3;
 use neurotess_mesh::Forest;
 
-use crate::vicinity::Vicinity;
-use crate::work::Work;
+use crate::surface::vicinity::Vicinity;
+use crate::surface::work::Work;
 
 /// Steps to the farthest that a vertex may go.
 const STEPS: usize = 10;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use neurotess_mesh::{Faces, self_intersections_of};
 use rayon::prelude::*;
 
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Cells of space around some vertices, and all faces that reach into them.
 pub(crate) struct Vicinity {

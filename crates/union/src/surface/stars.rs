@@ -5,7 +5,7 @@ use glam::DVec3;
 use neurotess_mesh::SurfaceVertex;
 use smallvec::SmallVec;
 
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Faces around a vertex; few have more than eight.
 type Star = SmallVec<[u32; 8]>;

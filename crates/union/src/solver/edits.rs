@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use neurotess_mesh::SurfaceVertex;
 use smallvec::SmallVec;
 
-use crate::stars::{Stars, normal};
+use crate::surface::stars::{Stars, normal};
 
 /// Cosine of how far a face may turn at once: 26°. A tube of six sides has 60° between them.
 const TURN: f64 = 0.9;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 use neurotess_mesh::self_intersections_of;
 
-use crate::work::Work;
+use crate::surface::work::Work;
 
 /// Steps of smoothing.
 const STEPS: usize = 3;

@@ -1,0 +1,5 @@
+//! Triangles as solvers like them.
+
+mod diagonals;
+mod edits;
+pub(crate) mod improve;
