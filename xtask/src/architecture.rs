@@ -8,6 +8,7 @@ use anyhow::bail;
 
 use crate::metadata::Package;
 use crate::modules::{self, Imports, Module};
+use crate::named_files;
 use crate::steps::root;
 
 /// A crate and the crates of ours that it may depend on (tests aside).
@@ -139,11 +140,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-testing-macros", &[]),
 ];
 
-/// An error that names each dependency that is not allowed, and each circle of imports.
+/// An error that names each dependency that is not allowed, each circle of imports, and files that pages name in vain.
 pub(crate) fn check(packages: &[Package]) -> anyhow::Result<String> {
     let crates = check_crates(packages)?;
     let files = check_files()?;
-    Ok(format!("{crates}; {files}"))
+    let named = named_files::check()?;
+    Ok(format!("{crates}; {files}; {named}"))
 }
 
 fn check_crates(packages: &[Package]) -> anyhow::Result<String> {

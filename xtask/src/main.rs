@@ -18,6 +18,7 @@ mod lane;
 mod licenses;
 mod metadata;
 mod modules;
+mod named_files;
 mod packages;
 mod pictures;
 mod programs;
@@ -60,7 +61,7 @@ const USAGE: &str = "cargo xtask COMMAND
             --against BEFORE.json whether sums got worse by more than 5 %; with --page benchmarks/quality.md
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
-            who knows whom among crates, folders and files
+            who knows whom among crates, folders and files; whether the files that pages name are there
   setup     a software Vulkan driver where there is none, a virtual display, and the Python environment
             of the package's tests (where Python 3 is); with --full other programs that read our
             files, Chromium, Valgrind and Rust's library for WebAssembly
