@@ -66,7 +66,16 @@ impl Body {
         let mut report = UnionReport::default();
         // There are other bodies to try.
         let most = MAX_GROWTH * pairs.len();
-        match merge(&mut tried, pairs, most, &options, &mut report, check) {
+        let insists = false;
+        match merge(
+            &mut tried,
+            pairs,
+            most,
+            insists,
+            &options,
+            &mut report,
+            check,
+        ) {
             Ok(left) => Ok(left.is_empty().then_some(tried)),
             Err(UnionError::Failed(_)) => Ok(None),
             Err(other) => Err(other),

@@ -78,7 +78,7 @@ pub fn union_stoppable(
     }
 
     let most = MAX_GROWTH * pairs.len() + work.triangles.len();
-    pairs = merge(&mut work, pairs, most, options, &mut report, &check)?;
+    pairs = merge(&mut work, pairs, most, true, options, &mut report, &check)?;
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
         let (joined, hidden) = rejoin(&mut work, mesh, options, &check)?;
         report.joined = joined;

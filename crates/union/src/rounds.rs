@@ -23,16 +23,17 @@ pub(crate) const MAX_GROWTH: usize = 4;
 const MAX_RINGS: u32 = 4;
 
 /// How often what crosses is pressed in, by a thousandth of its radius more each time, where even the whole surface could
-/// not be arranged.
+/// not be arranged. Tuned by nothing: no surface is known to need it.
 const MAX_PRESSES: u32 = 4;
 
 /// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. It is given up once a round leaves
-/// more than `most` pairs: what multiplies takes ever more time and memory, and comes to nothing. `check` is asked between
-/// steps whether to stop.
+/// more than `most` pairs: what multiplies takes ever more time and memory, and comes to nothing. `insists`: whether all is
+/// tried where a cut fails, which may take long. `check` is asked between steps whether to stop.
 pub(crate) fn merge(
     work: &mut Work,
     mut pairs: Vec<[u32; 2]>,
     most: usize,
+    insists: bool,
     options: &UnionOptions,
     report: &mut UnionReport,
     check: &dyn Fn() -> Result<(), UnionError>,
@@ -50,7 +51,7 @@ pub(crate) fn merge(
             }
         }
         let faces = touch::faces(work, &pairs);
-        cut(work, pairs, report, check, &splice)?;
+        cut(work, pairs, insists, report, check, &splice)?;
         check()?;
         let last = report.rounds == options.rounds;
         mend(work, if last { 0.0 } else { needles }, report);
@@ -66,21 +67,22 @@ pub(crate) fn merge(
     Ok(pairs)
 }
 
-/// Replaces the faces around crossings by their union. Where that fails, what crosses is pressed in a little, and cut
-/// where it then crosses. `splice`: [`splice()`], but in tests.
+/// Replaces the faces around crossings by their union. Where that fails and it `insists`, the whole surface is arranged, or
+/// what crosses pressed in a little, and cut where it then crosses. `splice`: [`splice()`], but in tests.
 fn cut(
     work: &mut Work,
     mut pairs: Vec<[u32; 2]>,
+    insists: bool,
     report: &mut UnionReport,
     check: &dyn Fn() -> Result<(), UnionError>,
     splice: &dyn Fn(&mut Work, &Region) -> Result<(), Fault>,
 ) -> Result<(), UnionError> {
     let mut times = 0;
     loop {
-        let Err(fault) = cut_at(work, &pairs, splice) else {
+        let Err(fault) = cut_at(work, &pairs, insists, splice) else {
             return Ok(());
         };
-        if times == MAX_PRESSES {
+        if !insists || times == MAX_PRESSES {
             return Err(UnionError::Failed(match fault {
                 Fault::Engine(text) => text,
                 Fault::Open => "what is kept does not close".into(),
@@ -95,21 +97,27 @@ fn cut(
     }
 }
 
-/// Replaces the faces around crossings, or all faces, by their union.
+/// Replaces the faces around crossings, or if it `insists` all faces, by their union.
 fn cut_at(
     work: &mut Work,
     pairs: &[[u32; 2]],
+    insists: bool,
     splice: &dyn Fn(&mut Work, &Region) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     if pairs.is_empty() {
         return Ok(());
     }
+    let mut done = Ok(());
     for rings in 1..=MAX_RINGS {
-        if splice(work, &around(work, pairs, rings)).is_ok() {
-            return Ok(());
+        done = splice(work, &around(work, pairs, rings));
+        if done.is_ok() {
+            return done;
         }
     }
-    splice(work, &everything(work, pairs))
+    match insists {
+        true => splice(work, &everything(work, pairs)),
+        false => done,
+    }
 }
 
 /// Makes a fair surface of what the cut has left.
@@ -152,7 +160,7 @@ mod tests {
     }
 
     /// Cuts where the first `failures` tries fail.
-    fn cut_after(failures: u32) -> (Work, UnionReport, Result<(), UnionError>) {
+    fn cut_after(failures: u32, insists: bool) -> (Work, UnionReport, Result<(), UnionError>) {
         let mut work = crossing();
         let pairs = self_intersections(&work.positions(), &work.faces());
         let left = std::cell::Cell::new(failures);
@@ -164,17 +172,17 @@ mod tests {
             }
         };
         let mut report = UnionReport::default();
-        let done = cut(&mut work, pairs, &mut report, &|| Ok(()), &fails);
+        let done = cut(&mut work, pairs, insists, &mut report, &|| Ok(()), &fails);
         (work, report, done)
     }
 
     #[test]
     fn where_a_cut_fails_a_wider_one_or_a_thousandth_of_the_radius_helps() {
-        let (exact, report, done) = cut_after(0);
+        let (exact, report, done) = cut_after(0, true);
         assert_eq!((report.parted, done), (0, Ok(())));
         let volume = |work: &Work| measure(&work.positions(), &work.faces()).volume;
         for failures in [MAX_RINGS, MAX_RINGS + 1, 3 * (MAX_RINGS + 1)] {
-            let (work, report, done) = cut_after(failures);
+            let (work, report, done) = cut_after(failures, true);
             assert_eq!(done, Ok(()), "{failures}");
             let presses = failures / (MAX_RINGS + 1);
             assert_eq!(report.parted > 0, presses > 0, "{failures}");
@@ -191,8 +199,11 @@ mod tests {
 
     #[test]
     fn what_can_be_cut_in_no_way_is_an_error() {
-        let (_, _, done) = cut_after(u32::MAX);
         let told = UnionError::Failed("what is kept does not close".into());
-        assert_eq!(done, Err(told));
+        for (failures, insists) in [(u32::MAX, true), (MAX_RINGS, false)] {
+            let (_, report, done) = cut_after(failures, insists);
+            assert_eq!(done, Err(told.clone()));
+            assert_eq!(report.parted > 0, insists);
+        }
     }
 }
