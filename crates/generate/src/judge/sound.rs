@@ -125,7 +125,8 @@ fn reaches_beyond(mesh: &CoarseMesh, reach: &Extent, patch: usize) -> bool {
         return false;
     }
     let mut points = Vec::with_capacity((STEPS as usize + 1).pow(2));
-    patch_points(mesh, patch, STEPS, &RefineOptions::default(), &mut points);
+    let options = RefineOptions::default();
+    patch_points(mesh, &[patch as u32], STEPS, &options, &mut points);
     !points.into_iter().all(|point| reach.has(point))
 }
 

@@ -30,7 +30,7 @@ const STRAIGHT_ON: f32 = 0.8;
 /// A ring that is so many times as thick as both next ones is a swelling.
 const SWELLING: f32 = 1.5;
 
-/// Patches to be refined, and pairs to be searched, that are worth a thread.
+/// Patches that are refined, and pairs that are searched, by one task.
 const MIN_PATCHES: usize = 64;
 const MIN_PAIRS: usize = 256;
 
@@ -233,24 +233,30 @@ impl RefinedPatches {
 
     /// The facets of some patches, from where their corners are now.
     fn refine(&self, patches: &[u32]) -> Vec<Facet> {
-        let mut facets = vec![Facet::default(); self.cut.facets() * patches.len()];
-        let of_patches = facets.par_chunks_mut(self.cut.facets());
-        let of_patches = of_patches.with_min_len(MIN_PATCHES).zip(patches);
-        of_patches.for_each_with(Vec::new(), |points, (facets, &patch)| {
-            points.clear();
-            self.patch_facets(patch as usize, points, facets);
+        let count = self.cut.facets();
+        let mut facets = vec![Facet::default(); count * patches.len()];
+        let parts = facets.par_chunks_mut(count * MIN_PATCHES);
+        let parts = parts.zip(patches.par_chunks(MIN_PATCHES));
+        parts.for_each_with(Vec::new(), |points, (facets, patches)| {
+            self.facets_at(patches, points, facets);
         });
         facets
     }
 
-    fn patch_facets(&self, patch: usize, points: &mut Vec<Vec3>, facets: &mut [Facet]) {
+    fn facets_at(&self, patches: &[u32], points: &mut Vec<Vec3>, facets: &mut [Facet]) {
         let mesh = &self.part.mesh;
+        points.clear();
         let steps = self.cut.steps as u32;
-        patch_points(mesh, patch, steps, &RefineOptions::default(), points);
-        let numbers = &self.points[self.cut.points() * patch..][..self.cut.points()];
-        let triangles = &self.cut.pattern(&mesh.patches[patch]).triangles;
-        for (facet, t) in facets.iter_mut().zip(triangles) {
-            *facet = Facet::new(t.map(|k| numbers[k]), t.map(|k| points[k]));
+        patch_points(mesh, patches, steps, &RefineOptions::default(), points);
+        let of_patches = facets.chunks_mut(self.cut.facets());
+        let of_patches = of_patches.zip(points.chunks(self.cut.points()));
+        for ((facets, points), &patch) in of_patches.zip(patches) {
+            let patch = patch as usize;
+            let numbers = &self.points[self.cut.points() * patch..][..self.cut.points()];
+            let triangles = &self.cut.pattern(&mesh.patches[patch]).triangles;
+            for (facet, t) in facets.iter_mut().zip(triangles) {
+                *facet = Facet::new(t.map(|k| numbers[k]), t.map(|k| points[k]));
+            }
         }
     }
 

@@ -125,10 +125,10 @@ mod tests {
         for cut in [Level::Two, Level::Four].map(Cut::of) {
             let (numbers, _) = numbers(&mesh, cut);
             let mut at = BTreeMap::new();
-            for (patch, numbers) in numbers.chunks(cut.points()).enumerate() {
+            for (patch, numbers) in (0..).zip(numbers.chunks(cut.points())) {
                 let mut points = Vec::new();
                 let options = RefineOptions::default();
-                patch_points(&mesh, patch, cut.steps as u32, &options, &mut points);
+                patch_points(&mesh, &[patch], cut.steps as u32, &options, &mut points);
                 for (&number, point) in numbers.iter().zip(points) {
                     assert_eq!(*at.entry(number).or_insert(point), point, "{number}");
                 }
