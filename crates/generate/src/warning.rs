@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The codes of all causes.
-pub(crate) const CODES: [&str; 42] = [
+pub(crate) const CODES: [&str; 41] = [
     "branch_repeated",
     "branches_separated",
     "branches_touch",
@@ -41,7 +41,6 @@ pub(crate) const CODES: [&str; 42] = [
     "soma_as_neurite",
     "soma_folded",
     "soma_hidden",
-    "soma_inverted",
     "soma_radius_mended",
     "soma_rounded",
     "stems_gathered",

@@ -109,15 +109,23 @@ impl InsetSite {
     }
 
     /// Way along the branch from the exit's plane to where a line beside the axis is this high over the
-    /// trunk, by sphere tracing from outside: from this far along the branch.
+    /// trunk: from this far along the branch down, by sphere tracing, and once that is near by secants.
     fn height(&self, trunk: &[RoundCone], beside: DVec3, height: f64, top: f64) -> f64 {
         let mut up = top;
+        // Of the last place: how far up it was, and how high.
+        let mut last = (f64::INFINITY, f64::INFINITY);
         for _ in 0..80 {
             let above = distance(trunk, self.exit + beside + self.direction * up) - height;
             if above.abs() < 1e-6 * self.radius {
                 break;
             }
-            up -= above;
+            let slope = (last.1 - above) / (last.0 - up);
+            last = (up, above);
+            // The slope of a distance is at most 1.
+            up -= match above.abs() < 0.5 * self.radius && slope > 0.1 {
+                true => above / slope.min(1.0),
+                false => above,
+            };
             if up < -3.0 * self.radius {
                 break;
             }

@@ -45,8 +45,8 @@ pub(super) fn traced(request: &SomaRequest<'_>, insertions: &[Insertion]) -> (f6
 }
 
 impl Draft<'_> {
-    /// The surface of the size that keeps what is asked for, and the size.
-    pub(super) fn fitting(&self) -> (f64, SomaSurface) {
+    /// The surface of the size that keeps what is asked for.
+    pub(super) fn fitting(&self) -> SomaSurface {
         let (volume, area) = traced(self.request, self.insertions);
         let elastic = self.request.method == SomaMethod::Fem;
         let kept = |extent: &Extent| match self.request.keep {
@@ -62,14 +62,15 @@ impl Draft<'_> {
         };
         let sizes = SIZES.map(|size| size.powf(3.0 / grows_by));
         let surface = self.of_size(1.0);
-        let mut best = (1.0, kept(&surface.extent), surface);
-        if !(elastic && best.1.is_finite() && best.1 > 0.0) {
-            return (1.0, best.2);
+        if !elastic {
+            return surface;
         }
-        let mut before = (1.0, best.1);
-        let mut size = f64::powf(best.1, -power);
+        let mut best = (kept(&surface.extent), surface);
+        let mut before = (1.0, best.0);
+        let mut size = f64::powf(best.0, -power);
         for _ in 0..STEPS {
-            if (best.1 - 1.0).abs() <= EXACT {
+            let is_positive = best.0.is_finite() && best.0 > 0.0;
+            if !is_positive || (best.0 - 1.0).abs() <= EXACT {
                 break;
             }
             size = size.clamp(sizes[0], sizes[1]);
@@ -82,13 +83,16 @@ impl Draft<'_> {
                 false => here.0 * f64::powf(here.1, -power),
             };
             before = here;
-            if (here.1 - 1.0).abs() < (best.1 - 1.0).abs() {
-                best = (here.0, here.1, surface);
+            if (here.1 - 1.0).abs() < (best.0 - 1.0).abs() {
+                best = (here.1, surface);
             } else if here.0 == sizes[0] || here.0 == sizes[1] {
                 break;
             }
         }
-        (best.0, best.2)
+        SomaSurface {
+            off: best.0 - 1.0,
+            ..best.1
+        }
     }
 
     /// The surface of a size, about the soma's center.
@@ -152,7 +156,7 @@ impl Draft<'_> {
             shrunk: 0,
             turned: 0,
             misfits: 0,
-            inverted: 0,
+            off: 0.0,
             folded: 0,
             dropped: Vec::new(),
             extent,

@@ -8,8 +8,8 @@
 //!
 //! **Practice.** K depends on the sphere and ν alone, so it is factored once, in eight parts of an eighth of the
 //! sphere ([`mirrors`]). A soma prescribes the displacements g of a few surface nodes c. With G = K⁻¹ the forces f
-//! that do so solve `G_cc f = g`, and the displacements of all nodes are `K⁻¹ f`: one small dense solve and one
-//! pair of triangular sweeps. Columns of G are solved for at their first use and kept.
+//! that do so solve `G_cc f = g`, and the displacements of the surface are `G f`: one small dense solve and a sum of
+//! columns of G. These are solved for at their first use and kept. What lies inside is never asked for.
 
 mod mirrors;
 
@@ -29,6 +29,8 @@ const COLUMNS: usize = 4;
 /// The factored stiffness of a sphere.
 pub(crate) struct Elasticity {
     mirrors: Mirrors,
+    /// Number of surface nodes, which come first.
+    surface: usize,
     /// By class of fields.
     fields: Vec<Field>,
 }
@@ -105,16 +107,29 @@ impl Elasticity {
         Some(Self {
             fields: fields?,
             mirrors,
+            surface: sphere.surface,
         })
     }
 
-    /// Displacements of every node when some surface nodes are moved as prescribed, for W prescriptions at once.
+    /// Displacements of the surface nodes when some of them are moved as prescribed, for W prescriptions at once.
     ///
     /// `None` if they are singular (a node named twice). Nodes that are anchored stay.
     pub(crate) fn solve<const W: usize>(
         &self,
         prescribed: &[(u32, [DVec3; W])],
     ) -> Option<Vec<[DVec3; W]>> {
+        let forces = self.forces(prescribed)?;
+        let solved: Vec<Vec<[f64; W]>> = (self.fields.iter())
+            .map(|field| self.answer(field, &forces))
+            .collect();
+        Some(self.displacements(self.surface, &solved))
+    }
+
+    /// The forces that move nodes as prescribed.
+    fn forces<const W: usize>(
+        &self,
+        prescribed: &[(u32, [DVec3; W])],
+    ) -> Option<Vec<(Constraint, [f64; W])>> {
         let free = prescribed.iter();
         let free = free.filter_map(|&(node, goal)| Some((self.mirrors.image(node)?, goal)));
         let constraints = free
@@ -126,16 +141,19 @@ impl Elasticity {
         let compliance = self.compliance(&constraints).factor()?;
         compliance.forward(&mut small);
         compliance.backward(&mut small);
-        let forces: Vec<(Constraint, [f64; W])> = constraints.into_iter().zip(small).collect();
-        let solved = self
-            .fields
-            .par_iter()
-            .map(|field| self.answer(field, &forces));
-        let solved: Vec<Vec<[f64; W]>> = solved.collect();
-        let displacements = |image: Image| -> [DVec3; W] {
+        Some(constraints.into_iter().zip(small).collect())
+    }
+
+    /// Displacements of the first nodes; `solved`: by class, those of the representatives.
+    fn displacements<const W: usize>(
+        &self,
+        nodes: usize,
+        solved: &[Vec<[f64; W]>],
+    ) -> Vec<[DVec3; W]> {
+        let of_image = |image: Image| -> [DVec3; W] {
             std::array::from_fn(|side| {
                 let along = |axis: usize| {
-                    let by_class = self.fields.iter().zip(&solved);
+                    let by_class = self.fields.iter().zip(solved);
                     let by_class = by_class.map(|(field, solved)| {
                         image.sign(field.parity, axis) * solved[3 * image.of as usize + axis][side]
                     });
@@ -144,28 +162,30 @@ impl Elasticity {
                 DVec3::from_array([0, 1, 2].map(along))
             })
         };
-        let images = self.mirrors.images();
-        let at = |image: Option<Image>| image.map_or([DVec3::ZERO; W], displacements);
-        Some(images.map(at).collect())
+        let images = self.mirrors.images().take(nodes);
+        let at = |image: Option<Image>| image.map_or([DVec3::ZERO; W], of_image);
+        images.map(at).collect()
     }
 
-    /// Displacements of the representatives under forces, in the fields of a class.
+    /// Displacements of the representatives on the surface under forces whose columns of G are known, in the fields of a
+    /// class.
     fn answer<const W: usize>(
         &self,
         field: &Field,
         forces: &[(Constraint, [f64; W])],
     ) -> Vec<[f64; W]> {
-        let mut x = vec![[0.0; W]; field.held.len()];
+        let mut x = vec![[0.0; W]; 3 * self.mirrors.surface];
+        let columns = field.lock_columns();
         for &(constraint, force) in forces {
-            let equation = constraint.equation();
-            if !field.held[equation] {
-                let weight = constraint.sign(field.parity) * self.share();
-                for (x, force) in x[equation].iter_mut().zip(force) {
-                    *x += weight * force;
+            let column = columns[constraint.equation()].as_deref();
+            let weight = constraint.sign(field.parity) * self.share();
+            let force = force.map(|force| weight * force);
+            for (x, column) in x.iter_mut().zip(column.unwrap_or_default()) {
+                for (x, force) in x.iter_mut().zip(force) {
+                    *x += column * force;
                 }
             }
         }
-        field.factor.solve(&mut x);
         x
     }
 

@@ -22,6 +22,10 @@ pub(crate) struct SomaRequest<'a> {
     pub(crate) attempts: u32,
 }
 
+/// Share by which a soma is off what it is to keep from which on its neurites pull too hard. Of the reference cells only the
+/// soma of `Neuron.h5` is off by more than a thousandth with its rings where they were traced, by a quarter.
+const MOST_OFF: f64 = 0.02;
+
 /// Tries before a surface with folds is handed back.
 pub(crate) const ATTEMPTS: u32 = 3;
 
@@ -43,8 +47,8 @@ pub(crate) struct SomaSurface {
     pub(crate) turned: usize,
     /// Neurites whose quad was more than 1.5 quad widths away before the warp.
     pub(crate) misfits: usize,
-    /// Tetrahedra turned inside out.
-    pub(crate) inverted: usize,
+    /// Share of what is kept (volume, area) by which it is off.
+    pub(crate) off: f64,
     /// Quads that face inwards; zero unless every remedy failed.
     pub(crate) folded: usize,
     /// Neurites that found no insertion quad.
@@ -59,8 +63,8 @@ impl SomaSurface {
         self.folded == 0 && self.dropped.is_empty()
     }
 
-    /// No fold and no tetrahedron inside out.
+    /// No fold, and about as large as was traced.
     pub(crate) fn sound(&self) -> bool {
-        self.folded == 0 && self.inverted == 0
+        self.folded == 0 && self.off.abs() <= MOST_OFF
     }
 }

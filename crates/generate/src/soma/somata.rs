@@ -315,9 +315,4 @@ fn warn(surface: &SomaSurface, warnings: &mut Warnings) {
         surface.folded,
         "quad of the soma's surface faces inwards: try --soma sphere or a larger --soma-scale",
     );
-    warnings.add_many(
-        "soma_inverted",
-        surface.inverted,
-        "tetrahedron of the soma turned inside out: the surface is valid all the same",
-    );
 }

@@ -25,7 +25,7 @@ use super::insertion_quads::{self, Insertion, InsertionQuads};
 use super::profile;
 use super::pull::Pull;
 use super::soma_surface::{ATTEMPTS, SomaRequest, SomaSurface};
-use super::sphere::{self, Sphere};
+use super::sphere::Sphere;
 use crate::{SomaMethod, SphereKind};
 
 /// A sphere with its factored stiffness, which is made at its first use.
@@ -219,14 +219,12 @@ fn deform(
         }),
         SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => Pull::none(sphere),
     };
-    let all = 0..sphere.nodes.len();
-    let mut nodes: Vec<DVec3> = all.map(|node| flow.apply(pull.node(node, 1.0))).collect();
+    let surface = 0..sphere.surface;
+    let mut nodes: Vec<DVec3> = surface
+        .map(|node| flow.apply(pull.node(node, 1.0)))
+        .collect();
     if request.method == SomaMethod::Profile {
-        profile::apply(
-            &mut nodes[..sphere.surface],
-            request.soma.radius,
-            insertions,
-        );
+        profile::apply(&mut nodes, request.soma.radius, insertions);
     }
     let quads = insertion_quads.quads.iter();
     let pulling = quads.zip(&flow.rings).zip(insertions.iter().zip(&reaches));
@@ -236,8 +234,7 @@ fn deform(
             nodes[vertex as usize] = corner.normalize_or_zero() * reach;
         });
     }
-    let directions = nodes[..sphere.surface].iter();
-    let directions: Vec<DVec3> = directions.map(|node| node.normalize_or_zero()).collect();
+    let directions: Vec<DVec3> = nodes.iter().map(|node| node.normalize_or_zero()).collect();
     let draft = Draft {
         request,
         sphere,
@@ -246,22 +243,13 @@ fn deform(
             .iter()
             .map(|&d| request.soma.surface(d))
             .collect(),
-        lengths: nodes[..sphere.surface]
-            .iter()
-            .map(|node| node.length())
-            .collect(),
+        lengths: nodes.iter().map(|node| node.length()).collect(),
         directions,
         insertion_quads,
         corners: &flow.rings,
         insertions,
     };
-    let (_, mut surface) = draft.fitting();
-    surface.inverted = match request.method {
-        SomaMethod::Fem => (sphere.tetrahedra.iter())
-            .filter(|t| sphere::volume(&nodes, **t) <= 0.0)
-            .count(),
-        SomaMethod::Sphere | SomaMethod::Profile | SomaMethod::None => 0,
-    };
+    let mut surface = draft.fitting();
     surface.folded = sphere.quads.iter().filter(|q| folded(&nodes, **q)).count();
     let width = 2.0 * std::f64::consts::PI.sqrt() / (sphere.quads.len() as f64).sqrt();
     surface.misfits = usize::from(insertion_quads.worst > 1.5 * width);

@@ -36,7 +36,8 @@ impl Warp {
                 .map(|(&a, &b)| great_circle(a, b, t))
                 .collect();
             let gram = Columns::from_fn(n, |i, j| {
-                kernel(here[i].distance_squared(here[j]), width) + if i == j { 1e-9 } else { 0.0 }
+                let near = kernel(here[i].distance_squared(here[j]) / (width * width));
+                near + if i == j { 1e-9 } else { 0.0 }
             });
             let velocities = next.iter().zip(&here).map(|(&next, &here)| next - here);
             let mut weights: Vec<[f64; 3]> = velocities.map(|v| v.to_array()).collect();
@@ -51,19 +52,21 @@ impl Warp {
 
     /// Where a direction goes.
     pub(crate) fn apply(&self, direction: DVec3) -> DVec3 {
+        let scale = (self.width * self.width).recip();
         self.steps.iter().fold(direction, |x, (centers, weights)| {
             let bells = centers.iter().zip(weights);
             let move_by: DVec3 = bells
-                .map(|(&c, &w)| w * kernel(x.distance_squared(c), self.width))
+                .map(|(&c, &w)| w * kernel(x.distance_squared(c) * scale))
                 .sum();
             (x + move_by).try_normalize().unwrap_or(x)
         })
     }
 }
 
-/// Inverse multiquadric of order 2: smooth, positive definite, no transcendental function.
-fn kernel(distance_squared: f64, width: f64) -> f64 {
-    let q = 1.0 + distance_squared / (width * width);
+/// Inverse multiquadric of order 2: smooth, positive definite, no transcendental function. `distance_squared`: in squares of
+/// its width.
+fn kernel(distance_squared: f64) -> f64 {
+    let q = 1.0 + distance_squared;
     1.0 / (q * q)
 }
 

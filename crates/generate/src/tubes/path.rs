@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint};
+use neurotess_mesh::{Patch, PatchKind, Role, TracingPoint, Vertex};
 
 use super::assembly::{Assembly, PlacedInset, Ring};
 use super::facing::{self, Facing, QUARTERS};
@@ -182,17 +182,20 @@ impl Assembly<'_> {
         } else {
             angles.map(|angle| frame * angle.cos() + side * angle.sin())
         };
-        let corners = directions
-            .map(|direction| self.vertex(planned.center, direction * planned.radius, tracing));
+        // Normals stand on the cone: directions are unit vectors across the unit tangent.
+        let lean = (1.0 + taper * taper).sqrt().recip();
+        let corners = directions.map(|direction| {
+            self.mesh.vertices.push(Vertex {
+                position: (planned.center + direction * planned.radius).as_vec3(),
+                normal: ((direction - tangent * taper) * lean).as_vec3(),
+                tracing,
+            });
+            self.mesh.vertices.len() as u32 - 1
+        });
         if let Some(crease) = rings.crease(ring) {
             // Its normal stays that of the circle.
             let position = planned.center + crease.offset * planned.radius;
             self.mesh.vertices[corners[crease.corner] as usize].position = position.as_vec3();
-        }
-        for vertex in corners {
-            let vertex = &mut self.mesh.vertices[vertex as usize];
-            vertex.normal =
-                (vertex.normal - (tangent * taper).as_vec3()).normalize_or(vertex.normal);
         }
         corners
     }

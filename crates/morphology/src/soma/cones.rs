@@ -111,7 +111,7 @@ impl Cones {
             return None;
         }
         let directions = Directions::new(COMPARED);
-        if self.holds(middle) && self.gaps(middle, &directions) == 0.0 {
+        if self.holds(middle) && self.gaps(middle, &directions, 0) == 0 {
             return Some(middle);
         }
         let count = self.frusta().count();
@@ -120,13 +120,17 @@ impl Cones {
             .frusta()
             .flat_map(|frustum| [frustum.to, frustum.from.midpoint(frustum.to)]);
         let places = places.step_by(stride).filter(|&place| self.holds(place));
-        let seen = places.map(|place| (self.gaps(place, &directions), place));
         // Of those that see the same, the nearest to the middle.
-        let best = seen.min_by(|(a, p), (b, q)| {
-            let far = |place: &DVec3| place.distance_squared(middle);
-            a.total_cmp(b).then(far(p).total_cmp(&far(q)))
-        });
-        best.map(|(_, place)| place)
+        let mut best: Option<(usize, f64, DVec3)> = None;
+        for place in places {
+            let (most, nearest) = best.map_or((usize::MAX, f64::MAX), |(gaps, far, _)| (gaps, far));
+            let gaps = self.gaps(place, &directions, most);
+            let far = place.distance_squared(middle);
+            if gaps < most || (gaps == most && far < nearest) {
+                best = Some((gaps, far, place));
+            }
+        }
+        best.map(|(_, _, place)| place)
     }
 
     fn holds(&self, place: DVec3) -> bool {
@@ -152,11 +156,12 @@ impl Cones {
 
     /// Whether nearly all of it is seen from the center.
     pub(super) fn is_star(&self, center: DVec3, directions: &Directions) -> bool {
-        self.gaps(center, directions) <= FEW
+        let few = (FEW * directions.units.len() as f64) as usize;
+        self.gaps(center, directions, few) <= few
     }
 
-    /// Share of directions in which something is hidden.
-    fn gaps(&self, center: DVec3, directions: &Directions) -> f64 {
+    /// Number of directions in which something is hidden; where there are more than `most`, one more than that.
+    fn gaps(&self, center: DVec3, directions: &Directions, most: usize) -> usize {
         let has_gap = |direction: &&DVec3| {
             let crossed = self.0.iter();
             let crossed = crossed.filter_map(|solid| solid.crossed(center, **direction));
@@ -183,8 +188,8 @@ impl Cones {
                 gap
             })
         };
-        let hidden = directions.units.iter().filter(has_gap).count();
-        hidden as f64 / directions.units.len() as f64
+        let hidden = directions.units.iter().filter(has_gap);
+        hidden.take(most.saturating_add(1)).count()
     }
 }
 
