@@ -129,7 +129,8 @@ impl Tracing {
 
     /// Appends the neurites' nodes without copies, and gives the sections that have numbers.
     fn neurites(&self, nodes: &mut Vec<Node>, lines: &mut Vec<u64>) -> Located<Vec<FileSection>> {
-        let soma = SomaPoints::new(nodes.iter().map(|n| n.position));
+        let roots = self.points.iter().filter(|point| point.parent.is_none());
+        let soma = SomaPoints::new(nodes.iter().map(|n| n.position), roots.count());
         let copies = self.copies();
         let (sections, numbers) = self.numbered_sections(&copies);
         let kept_before: Vec<u32> = copies
@@ -277,14 +278,24 @@ fn is_place(position: DVec3) -> bool {
     position.is_finite() && position.abs().max_element() <= Morphology::MAX_COORDINATE
 }
 
-/// The points of somata, to find the nearest to a place.
-struct SomaPoints(RTree<GeomWithData<[f64; 3], u32>>);
+/// The points of somata, to find the nearest to a place: in a list, or in a tree where that is asked often.
+enum SomaPoints {
+    Few(Vec<(DVec3, u32)>),
+    Tree(RTree<GeomWithData<[f64; 3], u32>>),
+}
+
+/// Questions that cost as much as a tree: 40 on 1,000 to 20,000 points.
+const WORTH_A_TREE: usize = 40;
 
 impl SomaPoints {
-    fn new(positions: impl Iterator<Item = DVec3>) -> Self {
+    /// `asked`: how often.
+    fn new(positions: impl Iterator<Item = DVec3>, asked: usize) -> Self {
         let points = positions.zip(0..).filter(|(p, _)| is_place(*p));
+        if asked <= WORTH_A_TREE {
+            return Self::Few(points.collect());
+        }
         let points = points.map(|(p, i)| GeomWithData::new(p.to_array(), i));
-        Self(RTree::bulk_load(points.collect()))
+        Self::Tree(RTree::bulk_load(points.collect()))
     }
 
     /// The first of those that are nearest.
@@ -292,7 +303,21 @@ impl SomaPoints {
         if !is_place(position) {
             return None;
         }
-        let nearest = self.0.nearest_neighbors(&position.to_array());
-        nearest.into_iter().map(|point| point.data).min()
+        match self {
+            Self::Few(points) => {
+                let (mut least, mut nearest) = (f64::INFINITY, None);
+                for &(point, number) in points {
+                    let far = point.distance_squared(position);
+                    if far < least {
+                        (least, nearest) = (far, Some(number));
+                    }
+                }
+                nearest
+            }
+            Self::Tree(tree) => {
+                let nearest = tree.nearest_neighbors(&position.to_array());
+                nearest.into_iter().map(|point| point.data).min()
+            }
+        }
     }
 }

@@ -20,13 +20,28 @@ pub(super) enum Token<'a> {
 pub(super) struct Lexer<'a> {
     rest: &'a [u8],
     line: u64,
+    /// The next token, once it was looked at, with what is left after it and its line.
+    ahead: Option<(Token<'a>, &'a [u8], u64)>,
 }
+
+/// By byte: whether a word ends before it.
+const ENDS_WORD: [bool; 256] = {
+    let mut ends = [false; 256];
+    let bytes = b" \t\n\x0c\r()|<>\";,\x0b\x1a\xa0\xc2";
+    let mut i = 0;
+    while i < bytes.len() {
+        ends[bytes[i] as usize] = true;
+        i += 1;
+    }
+    ends
+};
 
 impl<'a> Lexer<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self {
             rest: bytes,
             line: 1,
+            ahead: None,
         }
     }
 
@@ -41,7 +56,28 @@ impl<'a> Lexer<'a> {
     }
 
     /// The next token, read.
+    #[inline]
     pub(super) fn next(&mut self) -> Token<'a> {
+        if let Some((token, rest, line)) = self.ahead.take() {
+            (self.rest, self.line) = (rest, line);
+            return token;
+        }
+        self.read()
+    }
+
+    /// The next token, left where it is.
+    #[inline]
+    pub(super) fn peek(&mut self) -> Token<'a> {
+        if let Some((token, ..)) = self.ahead {
+            return token;
+        }
+        let mut beyond = *self;
+        let token = beyond.read();
+        self.ahead = Some((token, beyond.rest, beyond.line));
+        token
+    }
+
+    fn read(&mut self) -> Token<'a> {
         self.skip_blanks();
         let Some(&byte) = self.rest.first() else {
             return Token::End;
@@ -57,12 +93,6 @@ impl<'a> Lexer<'a> {
         };
         self.rest = &self.rest[1..];
         single
-    }
-
-    /// The next token, left where it is.
-    pub(super) fn peek(&self) -> Token<'a> {
-        let mut ahead = *self;
-        ahead.next()
     }
 
     /// White space, commas and comments. What follows a file separator (^Z) is padding.
@@ -101,8 +131,8 @@ impl<'a> Lexer<'a> {
     }
 
     fn word(&mut self) -> Token<'a> {
-        let ends = |b: &u8| b.is_ascii_whitespace() || b"()|<>\";,\x0b\x1a\xa0\xc2".contains(b);
-        let end = self.rest.iter().position(ends).unwrap_or(self.rest.len());
+        let end = self.rest.iter().position(|&byte| ENDS_WORD[usize::from(byte)]);
+        let end = end.unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
         let digits = word.strip_prefix(b"+").unwrap_or(word);
