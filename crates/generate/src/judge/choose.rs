@@ -60,12 +60,8 @@ pub(crate) fn mesh(
     };
     warnings.extend(made.warnings);
     let mut mesh = made.mesh;
-    let faulty = made
-        .patches
-        .iter()
-        .filter(|(fork, _)| !trials.is_sound(*fork));
-    let faulty: Vec<u32> = faulty.flat_map(|(_, range)| range.clone()).collect();
-    for ring in repair::draw_in_rings(&mut mesh, &faulty, stop) {
+    let is_sound = |fork| trials.is_sound(fork);
+    for ring in repair::draw_in_rings(&mut mesh, &made.patches, is_sound, stop) {
         warnings.add(
             "drawn_in",
             Some(i64::from(mesh.tracing[ring as usize].sample.0)),

@@ -22,8 +22,9 @@ mod stretches;
 mod suspects;
 
 use std::cmp::Reverse;
+use std::ops::Range;
 
-use neurotess_mesh::CoarseMesh;
+use neurotess_mesh::{CoarseMesh, Role};
 use rayon::prelude::*;
 
 use crate::judge::refined_patches::RefinedPatches;
@@ -40,18 +41,50 @@ const MAX_PATCHES: usize = 4_000;
 /// first, since most stretches are sound.
 const FEW: usize = 2;
 
-/// Draws in rings of a mesh. `faulty`: patches around forks whose best shape is known to have faults.
+/// Draws in rings of a mesh. `forks`: patches around each; `is_sound`: whether a fork was judged and has no faults.
 /// Returns the tracing points that are drawn in, ascending.
-pub(crate) fn draw_in_rings(mesh: &mut CoarseMesh, faulty: &[u32], stop: Stop<'_>) -> Vec<u32> {
+pub(crate) fn draw_in_rings(
+    mesh: &mut CoarseMesh,
+    forks: &[(u32, Range<u32>)],
+    is_sound: impl Fn(u32) -> bool,
+    stop: Stop<'_>,
+) -> Vec<u32> {
     let graph = RingGraph::new(mesh);
     let mut suspects = Suspects::new(mesh, &graph);
-    for &patch in faulty {
-        let corners = mesh.patches[patch as usize].corners;
-        suspects.add(corners.map(|v| mesh.vertices[v as usize].tracing));
+    // By patch: the sound forks that it is around. Forks were judged without their soma, beside which all is looked at.
+    let mut sound_forks: Vec<Vec<u32>> = vec![Vec::new(); mesh.patches.len()];
+    let is_beside_soma = |ring: &u32| {
+        let role = mesh.tracing[*ring as usize].role;
+        matches!(role, Role::Soma | Role::Insertion)
+    };
+    for (fork, patches) in forks {
+        let is_sound = is_sound(*fork);
+        for patch in patches.clone() {
+            let corners = mesh.patches[patch as usize].corners;
+            let rings = corners.map(|v| mesh.vertices[v as usize].tracing);
+            if !is_sound {
+                suspects.add(rings);
+            } else if !rings.iter().any(is_beside_soma) {
+                sound_forks[patch as usize].push(*fork);
+            }
+        }
     }
     let stretches = Stretches::new(mesh, &graph, &suspects);
+    // What lies around one sound fork was looked at.
+    let is_known = |number: &usize| {
+        let (first, rest) = match stretches.suspect[*number].split_first() {
+            Some((first, rest)) => (*first, rest),
+            None => return true,
+        };
+        let around = |fork: &u32| {
+            rest.iter()
+                .all(|&patch| sound_forks[patch as usize].contains(fork))
+        };
+        sound_forks[first as usize].iter().any(around)
+    };
     // Long ones first, so that no thread has one left when the others are done.
     let mut order: Vec<usize> = (0..stretches.patches.len()).collect();
+    order.retain(|number| !is_known(number));
     order.sort_by_key(|&number| Reverse(stretches.patches[number].len()));
     let mut drawn: Vec<(usize, DrawIn)> = order
         .into_par_iter()
