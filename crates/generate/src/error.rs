@@ -1,5 +1,7 @@
 //! What cannot be meshed at all.
 
+use neurotess_mesh::Stopped;
+
 /// Largest coordinate or radius (µm): a kilometer a thousand times over. Products of three still have
 /// room in 32 bits.
 pub(crate) const LARGEST: f64 = 1e12;
@@ -42,9 +44,9 @@ pub enum GenerateError {
         /// The file's own number of the sample.
         sample: i64,
     },
-    /// Another thread asked to stop: [`generate_stoppable`](crate::generate_stoppable).
-    #[error("stopped")]
-    Stopped,
+    /// Another thread stopped it: [`generate_watched`](crate::generate_watched).
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 impl GenerateError {
@@ -54,7 +56,7 @@ impl GenerateError {
             Self::TooLarge { sample, .. }
             | Self::Unresolved { sample, .. }
             | Self::NotFinite { sample } => *sample = own(*sample),
-            Self::Stopped => {}
+            Self::Stopped(_) => {}
         }
         self
     }

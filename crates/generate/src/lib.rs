@@ -8,7 +8,6 @@ mod options;
 mod plan;
 mod sides;
 mod soma;
-mod stop;
 mod tracing;
 mod tubes;
 mod warning;
@@ -21,16 +20,13 @@ pub use tracing::smooth::Smoothing;
 
 pub use warning::Warning;
 
-use std::sync::atomic::AtomicBool;
-
 use glam::DVec3;
-use neurotess_mesh::{CoarseMesh, Role, SectionNumber, SwcType, Vertex};
+use neurotess_mesh::{CoarseMesh, Role, SectionNumber, SwcType, Vertex, Watch};
 use neurotess_morphology::{Morphology, NeuriteKind, Soma};
 
 use soma::first_rings::RingRequests;
 use soma::hubs::{self, Hub};
 use soma::{near_forks, stems, stubs};
-use stop::Stop;
 use tracing::{Skeleton, coordinates, mend, repeated, separate, smooth, soma_ends, thin};
 use tubes::{SomaLabel, Somata};
 use warning::Warnings;
@@ -50,7 +46,7 @@ pub struct Generated {
     pub smoothing: Option<Smoothing>,
     /// What [`Crossings::Separate`] found and did; none without it.
     pub separation: Option<Separation>,
-    /// Seconds that somata took, by the clock of [`generate_timed`]; 0 without one.
+    /// Seconds that somata took, by the clock of [`generate_watched`]; 0 without one.
     pub soma_seconds: f64,
 }
 
@@ -94,20 +90,7 @@ pub fn generate(
     morphology: &Morphology,
     options: &GenerateOptions,
 ) -> Result<Generated, GenerateError> {
-    generate_timed(morphology, options, || 0.0)
-}
-
-/// [`generate`], which reports what share of the time somata take: `clock` tells the seconds since any
-/// moment. Nothing but [`Generated::soma_seconds`] depends on it.
-///
-/// # Errors
-/// As [`generate`].
-pub fn generate_timed(
-    morphology: &Morphology,
-    options: &GenerateOptions,
-    clock: impl Fn() -> f64,
-) -> Result<Generated, GenerateError> {
-    generate_stoppable(morphology, options, clock, &AtomicBool::new(false))
+    generate_watched(morphology, options, &Watch::default())
 }
 
 /// What is to be said of kinds that are asked for and that no section has: of usual ones only where there is none, since they
@@ -129,18 +112,17 @@ pub fn unused_kinds<'m>(
     (!names.is_empty()).then(|| format!("no point is of type {}", names.join(", ")))
 }
 
-/// [`generate_timed`], which ends soon after another thread sets `stopped`.
+/// [`generate`], which ends soon after it is stopped, and reports what share of the time somata take.
 ///
 /// # Errors
 /// As [`generate`], and [`GenerateError::Stopped`].
-pub fn generate_stoppable(
+pub fn generate_watched(
     morphology: &Morphology,
     options: &GenerateOptions,
-    clock: impl Fn() -> f64,
-    stopped: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<Generated, GenerateError> {
     let labels = morphology.sample_labels();
-    let mut generated = labeled(morphology, options, clock, Stop(stopped))
+    let mut generated = labeled(morphology, options, watch)
         .map_err(|e| e.with_own_sample(|label| labels.own_number(label)))?;
     if !labels.are_own() {
         for warning in &mut generated.warnings {
@@ -166,8 +148,7 @@ pub fn generate_stoppable(
 fn labeled(
     morphology: &Morphology,
     options: &GenerateOptions,
-    clock: impl Fn() -> f64,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> Result<Generated, GenerateError> {
     let mut warnings = Warnings::default();
     if let Some(message) = unused_kinds([morphology], options.kinds.as_deref()) {
@@ -200,8 +181,8 @@ fn labeled(
         coordinates::check(morphology, &skeleton, &mut Warnings::default())?;
     }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
-    stop.check()?;
-    let start = clock();
+    watch.check()?;
+    let start = watch.seconds();
     let requests = RingRequests::new(morphology, options);
     let built = soma::build(
         &mut skeleton,
@@ -209,10 +190,10 @@ fn labeled(
         &requests,
         options,
         &mut warnings,
-        stop,
+        watch,
     );
-    let soma_seconds = clock() - start;
-    stop.check()?;
+    let soma_seconds = watch.seconds() - start;
+    watch.check()?;
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);
@@ -229,10 +210,10 @@ fn labeled(
                 .map(|label| label.sample)
                 .collect::<Vec<i64>>(),
             &mut warnings,
-            stop,
+            watch,
         )),
     };
-    stop.check()?;
+    watch.check()?;
     let may_join = |from: u32, to: u32| {
         let separated = separated.as_ref();
         separated.is_none_or(|separated| separated.clearance.allows(from, to))
@@ -242,8 +223,8 @@ fn labeled(
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, stop);
-    stop.check()?;
+    let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, watch);
+    watch.check()?;
     mesh.origin = morphology.origin;
     if let Some(polygons) = options.polygons {
         tell_traced_radii(&mut mesh, polygons);

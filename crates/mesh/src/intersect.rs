@@ -21,15 +21,13 @@
 //! least". Batches of the tree's blocks are searched in order, and their size depends on what was found
 //! before and on nothing else: an unfinished search is the same on every machine.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::bvh::{Bounds, Bvh};
 use crate::crossing::{fans_meet, folded, has_area, triangles_meet};
 use crate::weld::first_alike;
-use crate::{Faces, SurfaceMesh};
+use crate::{Faces, SurfaceMesh, Watch};
 
 impl SurfaceMesh {
     /// See [`self_intersections`].
@@ -44,7 +42,7 @@ impl SurfaceMesh {
 /// Time grows with the faces and with the pairs found: a million triangles take about a second.
 /// Panics if a face names a vertex that is not there.
 pub fn self_intersections(positions: &[Vec3], faces: &Faces) -> Vec<[u32; 2]> {
-    search(positions, faces, Limits::NONE, || true).pairs
+    search(positions, faces, Limits::NONE, &Watch::default()).pairs
 }
 
 /// Those pairs of [`self_intersections`] that have at least one of the `chosen` faces. What changed a few
@@ -105,18 +103,16 @@ pub fn self_intersections_of(positions: &[Vec3], faces: &Faces, chosen: &[u32]) 
 
 /// Like [`self_intersections`], in a time that grows with the faces whatever their places.
 pub fn search_self_intersections(positions: &[Vec3], faces: &Faces) -> Search {
-    search(positions, faces, Limits::of(faces), || true)
+    search_self_intersections_watched(positions, faces, &Watch::default())
 }
 
-/// [`search_self_intersections`], which ends soon, incomplete, after another thread has set `stopped`.
-pub fn search_self_intersections_stoppable(
+/// [`search_self_intersections`], which ends soon, incomplete, once it is stopped.
+pub fn search_self_intersections_watched(
     positions: &[Vec3],
     faces: &Faces,
-    stopped: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Search {
-    // Nothing else is read by it: a moment later is as good.
-    let go_on = || !stopped.load(Ordering::Relaxed);
-    search(positions, faces, Limits::of(faces), go_on)
+    search(positions, faces, Limits::of(faces), watch)
 }
 
 /// What a search has found.
@@ -163,7 +159,7 @@ impl Limits {
 /// Most blocks in a batch; the first has one. Enough for many threads, few enough to stop soon.
 const MAX_BATCH: u64 = 256;
 
-fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() -> bool) -> Search {
+fn search(positions: &[Vec3], faces: &Faces, limits: Limits, watch: &Watch<'_>) -> Search {
     let triangles = triangles(positions, faces);
     let boxes: Vec<Bounds> = triangles
         .par_iter()
@@ -190,7 +186,7 @@ fn search(positions: &[Vec3], faces: &Faces, limits: Limits, go_on: impl Fn() ->
     let (mut next, mut batch) = (0, 1);
     let within =
         |pairs: &[_], looked_at| pairs.len() < limits.pairs && looked_at < limits.looked_at;
-    while next < blocks && within(&pairs, looked_at) && go_on() {
+    while next < blocks && within(&pairs, looked_at) && !watch.is_stopped() {
         let end = blocks.min(next + batch);
         let found = (next..end)
             .into_par_iter()
@@ -294,6 +290,8 @@ fn shared_first<C: Copy + PartialEq>(a: &mut [C; 3], b: &mut [C; 3]) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicBool;
+
     use super::*;
 
     /// Tetrahedra whose first corners are at these places.
@@ -317,7 +315,7 @@ mod tests {
             pairs: triangles,
             looked_at: Limits::LOOKS * triangles as u64,
         };
-        let found = search(positions, faces, limits, || true);
+        let found = search(positions, faces, limits, &Watch::default());
         (found.looked_at, found.complete)
     }
 
@@ -352,7 +350,7 @@ mod tests {
                 pairs: 10,
                 looked_at: u64::MAX,
             },
-            || true,
+            &Watch::default(),
         );
         let whole = search_self_intersections(&positions, &faces);
         assert!(whole.complete && whole.pairs == all);
@@ -368,7 +366,7 @@ mod tests {
         let (positions, faces) = pieces((0..60).map(|i| (i as f32 * 0.01 * Vec3::X, 1.0)));
         let found = |stopped| {
             let stopped = AtomicBool::new(stopped);
-            search_self_intersections_stoppable(&positions, &faces, &stopped)
+            search_self_intersections_watched(&positions, &faces, &Watch::stopped_by(&stopped))
         };
         let stopped = found(true);
         assert!(!stopped.complete && stopped.looked_at == 0 && stopped.pairs.is_empty());

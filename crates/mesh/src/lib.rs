@@ -51,6 +51,7 @@ mod table;
 mod topology;
 mod unit;
 mod walls;
+mod watch;
 mod watched;
 mod weld;
 mod write;
@@ -67,7 +68,7 @@ pub use format::{Format, UnknownFormat};
 pub use glam;
 pub use in_unit::InUnit;
 pub use intersect::{
-    Search, search_self_intersections, search_self_intersections_stoppable, self_intersections,
+    Search, search_self_intersections, search_self_intersections_watched, self_intersections,
     self_intersections_of,
 };
 pub use label::{FaceLabel, WALL, region_code, region_name, type_of_region};
@@ -85,6 +86,7 @@ pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};
 pub use unit::Unit;
 pub use walls::{Walled, with_walls};
+pub use watch::{Progress, Stage, Stopped, Watch};
 pub use watched::Watched;
 pub use weld::merge_identical;
 pub use write::{GlbNode, WriteError, WriteOptions, obj_materials, write, write_glb, write_with};

@@ -1,10 +1,8 @@
 //! Surfaces of triangles and quads, whole in memory or made block by block.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use glam::{DVec3, Vec3};
 
-use crate::{Soundness, Unit};
+use crate::{Soundness, Stopped, Unit, Watch};
 
 /// A vertex of a surface with the attributes that are exported.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -108,20 +106,17 @@ const BLOCK: usize = 1 << 16;
 impl SurfaceMesh {
     /// Collects all blocks of a surface.
     pub fn collect(surface: &(impl Surface + ?Sized)) -> Self {
-        Self::collect_while(surface, || true).unwrap_or_default()
+        Self::collect_watched(surface, &Watch::default()).unwrap_or_default()
     }
 
-    /// [`collect`](Self::collect), which ends between two blocks, with nothing, once another thread has set
-    /// `stopped`.
-    pub fn collect_stoppable(
+    /// [`collect`](Self::collect), which ends between two blocks, with nothing, once it is stopped.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn collect_watched(
         surface: &(impl Surface + ?Sized),
-        stopped: &AtomicBool,
-    ) -> Option<Self> {
-        // Nothing else is read by it: a moment later is as good.
-        Self::collect_while(surface, || !stopped.load(Ordering::Relaxed))
-    }
-
-    fn collect_while(surface: &(impl Surface + ?Sized), go_on: impl Fn() -> bool) -> Option<Self> {
+        watch: &Watch<'_>,
+    ) -> Result<Self, Stopped> {
         let mut mesh = Self {
             origin: surface.origin(),
             ..Self::default()
@@ -130,18 +125,14 @@ impl SurfaceMesh {
         mesh.faces.triangles.reserve(surface.triangle_count());
         mesh.faces.quads.reserve(surface.quad_count());
         for block in 0..surface.vertex_blocks() {
-            if !go_on() {
-                return None;
-            }
+            watch.check()?;
             surface.vertices(block, &mut mesh.vertices);
         }
         for block in 0..surface.face_blocks() {
-            if !go_on() {
-                return None;
-            }
+            watch.check()?;
             surface.faces(block, &mut mesh.faces);
         }
-        Some(mesh)
+        Ok(mesh)
     }
 }
 

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use neurotess::formats::{ReadOptions, read};
-use neurotess::generate::{GenerateOptions, generate, generate_timed};
-use neurotess::mesh::{Faces, Surface};
+use neurotess::generate::{GenerateOptions, generate, generate_watched};
+use neurotess::mesh::{Faces, Surface, Watch};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 
 #[expect(clippy::print_stdout, reason = "this is its output")]
@@ -46,7 +46,8 @@ fn stages(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let coarse_ms = best(7, || {
         let clock = Instant::now();
         let seconds = || clock.elapsed().as_secs_f64();
-        let again = generate_timed(&morphology, &generate_options, seconds).expect("meshed");
+        let watch = Watch::default().with_clock(&seconds);
+        let again = generate_watched(&morphology, &generate_options, &watch).expect("meshed");
         soma_ms = soma_ms.min(again.soma_seconds * 1e3);
     });
     let levels = LodCriterion::Homogeneous(4);

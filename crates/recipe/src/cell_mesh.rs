@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use neurotess_generate::{GenerateError, Generated, generate_stoppable};
+use neurotess_generate::{GenerateError, Generated, generate_watched};
 use neurotess_mesh::Format;
 use neurotess_morphology::Morphology;
 use neurotess_union::UnionError;
@@ -119,14 +119,10 @@ fn generated(
     watch: &Watch<'_>,
 ) -> Result<Arc<Generated>, MeshError> {
     watch.tell(Stage::Mesh, 0, 0);
-    let generated = generate_stoppable(
-        morphology,
-        &soma_mesh::generate_options(options, morphology)?,
-        || watch.seconds(),
-        watch.flag(),
-    );
+    let options = soma_mesh::generate_options(options, morphology)?;
+    let generated = generate_watched(morphology, &options, watch);
     generated.map(Arc::new).map_err(|e| match e {
-        GenerateError::Stopped => MeshError::Stopped,
+        GenerateError::Stopped(_) => MeshError::Stopped,
         e => e.into(),
     })
 }
@@ -154,7 +150,7 @@ impl CellMesh {
             .merges()
             .then(|| Merged::new(&generated.mesh, options, watch));
         let merged = merged.transpose().map_err(|e| match e {
-            MeshError::Merge(UnionError::Stopped) => MeshError::Stopped,
+            MeshError::Merge(UnionError::Stopped(_)) => MeshError::Stopped,
             e => e,
         })?;
         Ok(Self {

@@ -45,7 +45,6 @@ mod tracing;
 mod value;
 mod verdict;
 mod warning;
-mod watch;
 mod words;
 
 pub use cell_mesh::{CellMesh, mesh, mesh_from, mesh_watched};
@@ -59,11 +58,11 @@ pub use files::{
 pub use merged::Merged;
 pub use named::NamedOptions;
 pub use names::{MeshOption, Spelling};
+pub use neurotess_mesh::{Progress, Stage, Watch};
 pub use options::{Crossings, Levels, MeshOptions, Purpose, Radii, SIMULATION_ASPECT};
 pub use report::{CrossingsReport, MeshReport, SeparationReport, SmoothingReport};
 pub use surface::CellSurface;
 pub use tracing::{Tracing, read};
 pub use value::OptionValue;
 pub use warning::{SurfaceWarning, Warning};
-pub use watch::{Progress, Stage, Watch};
 pub use words::{KINDS, neurite_kinds};

@@ -6,7 +6,7 @@ use neurotess_mesh::{
     CoarseMesh, Extent, Quality, Soundness, SurfaceMesh, Topology, measure_surface, quality,
 };
 use neurotess_refine::EdgeRule;
-use neurotess_union::{UnionError, UnionOptions, UnionReport, union_stoppable};
+use neurotess_union::{UnionError, UnionOptions, UnionReport, union_watched};
 
 use crate::refined::refined;
 use crate::{Levels, MeshError, MeshOptions, Watch};
@@ -55,10 +55,9 @@ impl Merged {
             },
             false => UnionOptions::default(),
         };
-        let whole = SurfaceMesh::collect_stoppable(&*refined(mesh, options, true), watch.flag());
-        let merged = whole
-            .ok_or(UnionError::Stopped)
-            .and_then(|whole| union_stoppable(&whole, &union_options, watch.flag()))?;
+        let merged = SurfaceMesh::collect_watched(&*refined(mesh, options, true), watch)
+            .map_err(UnionError::from)
+            .and_then(|whole| union_watched(&whole, &union_options, watch))?;
         if merged.report.pairs > 0 {
             let first = merged.report.places.first();
             return Err(MeshError::StillCrosses {

@@ -1,7 +1,7 @@
 //! Closed bodies that are merged into a surface, where it lacks something.
 
 use glam::DVec3;
-use neurotess_mesh::{SurfaceVertex, Topology, self_intersections_of};
+use neurotess_mesh::{SurfaceVertex, Topology, Watch, self_intersections_of};
 
 use crate::options::{UnionError, UnionOptions};
 use crate::report::UnionReport;
@@ -50,7 +50,7 @@ impl Body {
         names: &[SurfaceVertex],
         part: u32,
         options: &UnionOptions,
-        check: &dyn Fn() -> Result<(), UnionError>,
+        watch: &Watch<'_>,
     ) -> Result<Option<Work>, UnionError> {
         let mut tried = work.clone();
         let faces = self.add(&mut tried, names, part);
@@ -74,7 +74,7 @@ impl Body {
             insists,
             &options,
             &mut report,
-            check,
+            watch,
         ) {
             Ok(left) => Ok(left.is_empty().then_some(tried)),
             Err(UnionError::Failed(_)) => Ok(None),

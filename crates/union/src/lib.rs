@@ -52,6 +52,6 @@ mod rounds;
 mod solver;
 mod surface;
 
-pub use merge::{Union, crossing_places, union, union_stoppable};
+pub use merge::{Union, crossing_places, union, union_watched};
 pub use options::{UnionError, UnionOptions};
 pub use report::{Filled, Joined, Kin, Part, Place, UnionReport, Why};

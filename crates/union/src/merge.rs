@@ -1,9 +1,8 @@
 //! The recipe: find, cut, mend, check, and once more.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use neurotess_mesh::{SurfaceMesh, Topology, measure, search_self_intersections_stoppable};
+use neurotess_mesh::{SurfaceMesh, Topology, Watch, measure, search_self_intersections_watched};
 
 use crate::handles::fill::fill;
 use crate::handles::rejoin::rejoin;
@@ -37,36 +36,32 @@ pub struct Union {
 /// If the surface is not closed and oriented, is not finite, or crosses itself more often than a search
 /// counts; and if the arrangement fails.
 pub fn union(mesh: &SurfaceMesh, options: &UnionOptions) -> Result<Union, UnionError> {
-    union_stoppable(mesh, options, &AtomicBool::new(false))
+    union_watched(mesh, options, &Watch::default())
 }
 
-/// [`union`], which ends soon after another thread sets `stopped`: while it searches, and between its other steps.
+/// [`union`], which ends soon after it is stopped: while it searches, and between its other steps.
 ///
 /// # Errors
 /// As [`union`], and [`UnionError::Stopped`].
-pub fn union_stoppable(
+pub fn union_watched(
     mesh: &SurfaceMesh,
     options: &UnionOptions,
-    stopped: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<Union, UnionError> {
-    let check = || match stopped.load(Ordering::Relaxed) {
-        true => Err(UnionError::Stopped),
-        false => Ok(()),
-    };
-    check()?;
+    watch.check()?;
     let mut work = Work::new(mesh)?;
-    check()?;
+    watch.check()?;
     let mut report = before(&work)?;
-    let mut pairs = crossings(&work, stopped)?;
+    let mut pairs = crossings(&work, watch)?;
     let crossed = corners_of(&work, &pairs);
     report.pairs_before = pairs.len();
     report.places = places(&work, &pairs);
     report.dropped = drop_hidden(&mut work, &pairs);
     if !report.dropped.is_empty() {
-        pairs = crossings(&work, stopped)?;
+        pairs = crossings(&work, watch)?;
     }
     if options.press > 0.0 && !pairs.is_empty() {
-        check()?;
+        watch.check()?;
         let crossed = places(&work, &pairs);
         let pressed = press_in(&mut work, &pairs, options.press);
         report.pressed = pressed.moved;
@@ -78,27 +73,27 @@ pub fn union_stoppable(
     }
 
     let most = MAX_GROWTH * pairs.len() + work.triangles.len();
-    pairs = merge(&mut work, pairs, most, true, options, &mut report, &check)?;
+    pairs = merge(&mut work, pairs, most, true, options, &mut report, watch)?;
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
-        let (joined, hidden) = rejoin(&mut work, mesh, options, &check)?;
+        let (joined, hidden) = rejoin(&mut work, mesh, options, watch)?;
         report.joined = joined;
         report.dropped.extend(hidden);
         report.cut_off = still_cut_off(&work);
     }
     if options.fill > 0.0 && pairs.is_empty() {
-        report.filled = fill(&mut work, options, report.handles_before, &check)?;
+        report.filled = fill(&mut work, options, report.handles_before, watch)?;
     }
     if report.rounds > 0 && pairs.is_empty() {
         report.smoothed = smooth(&mut work, options.smoothing);
     }
-    check()?;
+    watch.check()?;
     let mut searched = false;
     if options.least_angle > 0.0 && pairs.is_empty() {
         let improved = improve(&mut work, options.least_angle);
         (report.improved, searched) = (improved.total(), improved.crosses_nothing);
     }
     renew_normals(&mut work);
-    check()?;
+    watch.check()?;
     let of_changed = match searched {
         true => 0,
         false => work.crossings_of_changed().len(),
@@ -118,19 +113,18 @@ pub fn union_stoppable(
 /// Where a surface crosses itself, as [`union`] reports it, without merging anything.
 ///
 /// # Errors
-/// If it crosses itself in too many places, is no mesh, or another thread has set `stopped`.
-pub fn crossing_places(mesh: &SurfaceMesh, stopped: &AtomicBool) -> Result<Vec<Place>, UnionError> {
+/// If it crosses itself in too many places, is no mesh, or it is stopped.
+pub fn crossing_places(mesh: &SurfaceMesh, watch: &Watch<'_>) -> Result<Vec<Place>, UnionError> {
     let work = Work::new(mesh)?;
-    Ok(places(&work, &crossings(&work, stopped)?))
+    Ok(places(&work, &crossings(&work, watch)?))
 }
 
-fn crossings(work: &Work, stopped: &AtomicBool) -> Result<Vec<[u32; 2]>, UnionError> {
-    let search = search_self_intersections_stoppable(&work.positions(), &work.faces(), stopped);
+fn crossings(work: &Work, watch: &Watch<'_>) -> Result<Vec<[u32; 2]>, UnionError> {
+    let search = search_self_intersections_watched(&work.positions(), &work.faces(), watch);
     if search.complete {
         Ok(search.pairs)
-    } else if stopped.load(Ordering::Relaxed) {
-        Err(UnionError::Stopped)
     } else {
+        watch.check()?;
         Err(UnionError::TooMany(search.pairs.len()))
     }
 }

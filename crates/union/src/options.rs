@@ -1,5 +1,6 @@
 //! What a union is told, and why it may fail.
 
+use neurotess_mesh::Stopped;
 use thiserror::Error;
 
 /// What a union is told.
@@ -60,7 +61,7 @@ pub enum UnionError {
     /// The faces near crossings could not be arranged.
     #[error("the faces that cross could not be cut: {0}")]
     Failed(String),
-    /// Another thread asked to stop: [`union_stoppable`](crate::union_stoppable).
-    #[error("stopped")]
-    Stopped,
+    /// Another thread stopped it: [`union_watched`](crate::union_watched).
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }

@@ -1,6 +1,6 @@
 //! Cut, mend, check, and once more, until nothing crosses.
 
-use neurotess_mesh::measure;
+use neurotess_mesh::{Watch, measure};
 
 use crate::arrange::region::{Region, around, everything};
 use crate::arrange::splice::{Fault, splice};
@@ -36,12 +36,12 @@ pub(crate) fn merge(
     insists: bool,
     options: &UnionOptions,
     report: &mut UnionReport,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<Vec<[u32; 2]>, UnionError> {
     let mut needles = options.needles;
     while !pairs.is_empty() && pairs.len() <= most && report.rounds < options.rounds {
         report.rounds += 1;
-        check()?;
+        watch.check()?;
         if report.rounds > EXACT_ROUNDS {
             let times = f64::from(report.rounds - EXACT_ROUNDS);
             report.parted += touch::press_all(work, &pairs, times);
@@ -51,8 +51,8 @@ pub(crate) fn merge(
             }
         }
         let faces = touch::faces(work, &pairs);
-        cut(work, pairs, insists, report, check, &splice)?;
-        check()?;
+        cut(work, pairs, insists, report, watch, &splice)?;
+        watch.check()?;
         let last = report.rounds == options.rounds;
         mend(work, if last { 0.0 } else { needles }, report);
         // What is finer stays: collapsing may be what made the new crossings.
@@ -74,7 +74,7 @@ fn cut(
     mut pairs: Vec<[u32; 2]>,
     insists: bool,
     report: &mut UnionReport,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
     splice: &dyn Fn(&mut Work, &Region) -> Result<(), Fault>,
 ) -> Result<(), UnionError> {
     let mut times = 0;
@@ -89,7 +89,7 @@ fn cut(
                 Fault::Inconsistent => "winding numbers contradict one another".into(),
             }));
         }
-        check()?;
+        watch.check()?;
         times += 1;
         report.parted += touch::press_all(work, &pairs, f64::from(times));
         // All faces that crossed have moved.
@@ -172,7 +172,14 @@ mod tests {
             }
         };
         let mut report = UnionReport::default();
-        let done = cut(&mut work, pairs, insists, &mut report, &|| Ok(()), &fails);
+        let done = cut(
+            &mut work,
+            pairs,
+            insists,
+            &mut report,
+            &Watch::default(),
+            &fails,
+        );
         (work, report, done)
     }
 

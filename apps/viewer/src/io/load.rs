@@ -7,7 +7,8 @@ use std::time::{Instant, SystemTime};
 
 use neurotess::cache::Cache;
 use neurotess::formats::{self, ReadOptions};
-use neurotess::generate::generate_timed;
+use neurotess::generate::generate_watched;
+use neurotess::mesh::Watch;
 use neurotess::morphology::{Measures, Morphology, shape};
 use neurotess::synth::{self, Kind};
 
@@ -67,7 +68,8 @@ fn source(
     let clock = Instant::now();
     let seconds = || clock.elapsed().as_secs_f64();
     let options = soma.options();
-    let generate = || generate_timed(&morphology, &options, seconds);
+    let watch = Watch::default().with_clock(&seconds);
+    let generate = || generate_watched(&morphology, &options, &watch);
     let (generated, proxy) = match cache {
         Some(cache) => {
             let meshed = cache.mesh(&morphology, &options, generate);

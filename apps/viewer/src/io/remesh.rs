@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use neurotess::circuit::{Circuit, NodeRef, soma_center};
-use neurotess::generate::generate_timed;
+use neurotess::generate::generate_watched;
+use neurotess::mesh::Watch;
 use neurotess::morphology::edit::{self, Edit, SpinePlaces};
 use neurotess::morphology::{Measures, Morphology};
 
@@ -41,7 +42,8 @@ pub(crate) fn remesh(request: &MeshRequest) -> Result<Meshed, String> {
     let morphology = grown.as_ref().map_or(&request.drawn, |g| &g.morphology);
     let clock = Instant::now();
     let seconds = || clock.elapsed().as_secs_f64();
-    let generated = generate_timed(morphology, &request.soma.options(), seconds);
+    let watch = Watch::default().with_clock(&seconds);
+    let generated = generate_watched(morphology, &request.soma.options(), &watch);
     let generated = generated.map_err(|e| e.to_string())?;
     Ok(Meshed { generated, grown })
 }

@@ -131,7 +131,10 @@ impl<'a> Lexer<'a> {
     }
 
     fn word(&mut self) -> Token<'a> {
-        let end = self.rest.iter().position(|&byte| ENDS_WORD[usize::from(byte)]);
+        let end = self
+            .rest
+            .iter()
+            .position(|&byte| ENDS_WORD[usize::from(byte)]);
         let end = end.unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use neurotess_mesh::CoarseMesh;
+use neurotess_mesh::{CoarseMesh, Watch};
 use rayon::prelude::*;
 
 use super::layout::Layout;
@@ -17,7 +17,6 @@ use crate::judge::fork_trials::{ForkFaults, ForkTrials, Judged};
 use crate::judge::neighborhood::Neighborhood;
 use crate::judge::refined_patches::RefinedPatches;
 use crate::plan::{ForkChoice, MayJoin};
-use crate::stop::Stop;
 use crate::tracing::Skeleton;
 use crate::tubes::Somata;
 use crate::warning::Warnings;
@@ -28,16 +27,16 @@ pub(crate) fn mesh(
     somata: &Somata<'_>,
     may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> CoarseMesh {
     let mut trials = ForkTrials::new(skeleton);
     let made = Layout::new(skeleton, trials.choices(), Some(somata), may_join);
     let first = trials.choices().to_vec();
-    let judged = judge(&trials, &made, &|fork| fork, stop);
+    let judged = judge(&trials, &made, &|fork| fork, watch);
     trials.advance([judged]);
     loop {
         let open = trials.open();
-        if open.is_empty() || stop.asked() {
+        if open.is_empty() || watch.is_stopped() {
             break;
         }
         let parts = Neighborhood::parts(skeleton, &open);
@@ -48,12 +47,12 @@ pub(crate) fn mesh(
             let choices: Vec<ForkChoice> = choices.collect();
             let may_join = |from: u32, to: u32| may_join(old(from), old(to));
             let made = Layout::new(&near.skeleton, &choices, None, &may_join);
-            judge(&trials, &made, &old, stop)
+            judge(&trials, &made, &old, watch)
         });
         let judged: Vec<Judged> = judged.collect();
         trials.advance(judged);
     }
-    let made = if trials.choices() == first || stop.asked() {
+    let made = if trials.choices() == first || watch.is_stopped() {
         made
     } else {
         Layout::new(skeleton, trials.choices(), Some(somata), may_join)
@@ -61,7 +60,7 @@ pub(crate) fn mesh(
     warnings.extend(made.warnings);
     let mut mesh = made.mesh;
     let is_sound = |fork| trials.is_sound(fork);
-    for ring in repair::draw_in_rings(&mut mesh, &made.patches, is_sound, stop) {
+    for ring in repair::draw_in_rings(&mut mesh, &made.patches, is_sound, watch) {
         warnings.add(
             "drawn_in",
             Some(i64::from(mesh.tracing[ring as usize].sample.0)),
@@ -72,7 +71,12 @@ pub(crate) fn mesh(
 }
 
 /// Judges the forks of a mesh that are not settled. `old`: a node of the skeleton by that of the mesh's.
-fn judge(trials: &ForkTrials, made: &Layout, old: &dyn Fn(u32) -> u32, stop: Stop<'_>) -> Judged {
+fn judge(
+    trials: &ForkTrials,
+    made: &Layout,
+    old: &dyn Fn(u32) -> u32,
+    watch: &Watch<'_>,
+) -> Judged {
     let mut near: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (fork, range) in &made.patches {
         if trials.is_open(old(*fork)) {
@@ -80,13 +84,15 @@ fn judge(trials: &ForkTrials, made: &Layout, old: &dyn Fn(u32) -> u32, stop: Sto
         }
     }
     let near: Vec<(u32, Vec<u32>)> = near.into_iter().collect();
-    let faults = near.par_iter().map(|(fork, patches)| match stop.asked() {
-        true => (*fork, ForkFaults::default()),
-        false => {
-            let patches = RefinedPatches::new(&made.mesh, patches.clone());
-            (*fork, ForkFaults::of(&patches))
-        }
-    });
+    let faults = near
+        .par_iter()
+        .map(|(fork, patches)| match watch.is_stopped() {
+            true => (*fork, ForkFaults::default()),
+            false => {
+                let patches = RefinedPatches::new(&made.mesh, patches.clone());
+                (*fork, ForkFaults::of(&patches))
+            }
+        });
     Judged {
         refused: made.refused.iter().map(|&fork| old(fork)).collect(),
         faults: faults.collect(),

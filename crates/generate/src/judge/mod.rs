@@ -10,10 +10,9 @@ mod refined_patches;
 mod repair;
 mod sound;
 
-use neurotess_mesh::CoarseMesh;
+use neurotess_mesh::{CoarseMesh, Watch};
 
 use crate::plan::MayJoin;
-use crate::stop::Stop;
 use crate::tracing::Skeleton;
 use crate::tubes::Somata;
 use crate::warning::Warnings;
@@ -25,13 +24,13 @@ pub(crate) fn sound_mesh(
     somata: &Somata<'_>,
     may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> CoarseMesh {
     let mut found = Warnings::default();
-    let mut mesh = choose::mesh(skeleton, somata, may_join, &mut found, stop);
+    let mut mesh = choose::mesh(skeleton, somata, may_join, &mut found, watch);
     for simpler in Simpler::ALL {
         let faulty = sound::faulty_samples(&mesh);
-        if faulty.is_empty() || stop.asked() {
+        if faulty.is_empty() || watch.is_stopped() {
             break;
         }
         found = Warnings::default();
@@ -41,7 +40,7 @@ pub(crate) fn sound_mesh(
             "path turns back within its own tube, which would be inside out: meshed without these turns",
         );
         let simpler = simpler.of(skeleton, &faulty);
-        mesh = choose::mesh(&simpler, somata, &|_, _| true, &mut found, stop);
+        mesh = choose::mesh(&simpler, somata, &|_, _| true, &mut found, watch);
     }
     warnings.extend(found);
     mesh

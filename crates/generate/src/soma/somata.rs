@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
+use neurotess_mesh::Watch;
 
 use crate::soma::draft;
 use crate::soma::first_rings::{self, PlacedRing, RingRequests};
@@ -10,7 +11,6 @@ use crate::soma::insertion_quads::Insertion;
 use crate::soma::soma_surface::{ATTEMPTS, SomaRequest, SomaSurface};
 use crate::soma::surface;
 use crate::soma::trials::Trial;
-use crate::stop::Stop;
 use crate::tracing::SomaSphere;
 use crate::tracing::{Root, Skeleton};
 use crate::warning::Warnings;
@@ -35,7 +35,7 @@ pub(crate) fn build(
     requests: &RingRequests<'_>,
     options: &GenerateOptions,
     warnings: &mut Warnings,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> Built {
     let farthest: Vec<f64> = soma_spheres
         .iter()
@@ -84,7 +84,7 @@ pub(crate) fn build(
                 again = true;
             }
         }
-        if again && !stop.asked() {
+        if again && !watch.is_stopped() {
             continue;
         }
         (somata.iter().flatten()).for_each(|soma| warn(&soma.surface, &mut trial_warnings));

@@ -1,10 +1,10 @@
 //! Another thread can stop the work.
 
-use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use neurotess_formats::{ReadOptions, swc};
-use neurotess_generate::{GenerateError, GenerateOptions, generate, generate_stoppable};
+use neurotess_generate::{GenerateError, GenerateOptions, generate, generate_watched};
+use neurotess_mesh::Watch;
 
 #[neurotess_testing::test]
 fn what_is_stopped_is_an_error_at_whichever_stage() {
@@ -13,18 +13,19 @@ fn what_is_stopped_is_an_error_at_whichever_stage() {
     let options = GenerateOptions::default();
     // The clock is asked before and after the soma.
     for stage in 0..3 {
-        let (stopped, asked) = (AtomicBool::new(stage == 0), Cell::new(0));
+        let (stopped, asked) = (AtomicBool::new(stage == 0), AtomicUsize::new(0));
         let clock = || {
-            asked.set(asked.get() + 1);
-            stopped.fetch_or(asked.get() == stage, Ordering::Relaxed);
+            let asked = asked.fetch_add(1, Ordering::Relaxed) + 1;
+            stopped.fetch_or(asked == stage, Ordering::Relaxed);
             0.0
         };
-        let made = generate_stoppable(&read.morphology, &options, clock, &stopped);
-        assert!(matches!(made, Err(GenerateError::Stopped)), "{stage}");
-        assert_eq!(asked.get(), [0, 2, 2][stage], "{stage}");
+        let watch = Watch::stopped_by(&stopped).with_clock(&clock);
+        let made = generate_watched(&read.morphology, &options, &watch);
+        assert!(matches!(made, Err(GenerateError::Stopped(_))), "{stage}");
+        assert_eq!(asked.into_inner(), [0, 2, 2][stage], "{stage}");
     }
     let running = AtomicBool::new(false);
-    let made = generate_stoppable(&read.morphology, &options, || 0.0, &running);
+    let made = generate_watched(&read.morphology, &options, &Watch::stopped_by(&running));
     let usual = generate(&read.morphology, &options).expect("a mesh");
     assert_eq!(made.expect("a mesh").mesh, usual.mesh);
 }

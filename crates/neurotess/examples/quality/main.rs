@@ -14,8 +14,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use neurotess::formats::{ReadOptions, read};
-use neurotess::generate::{GenerateOptions, Generated, generate_timed};
-use neurotess::mesh::{CoarseMesh, Role, SurfaceMesh, topology};
+use neurotess::generate::{GenerateOptions, Generated, generate_watched};
+use neurotess::mesh::{CoarseMesh, Role, SurfaceMesh, Watch, topology};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement, pack};
 
 use facets::{crossings, folded};
@@ -51,7 +51,11 @@ fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
     for _ in 0..RUNS {
         let clock = Instant::now();
         let seconds = || clock.elapsed().as_secs_f64();
-        generated = generate_timed(&morphology, &GenerateOptions::default(), seconds)?;
+        generated = generate_watched(
+            &morphology,
+            &GenerateOptions::default(),
+            &Watch::default().with_clock(&seconds),
+        )?;
         fastest = fastest.min(seconds());
         soma_seconds = soma_seconds.min(generated.soma_seconds);
     }

@@ -65,8 +65,8 @@ impl<'s> FileSurface<'s> {
 
 fn walled(surface: &dyn Surface, watch: &Watch<'_>) -> Result<Walled, SaveError> {
     let watched = Watched::new(surface);
-    let whole = SurfaceMesh::collect_stoppable(&watched, watch.flag());
-    let whole = whole.ok_or(SaveError::Stopped)?;
+    let whole = SurfaceMesh::collect_watched(&watched, watch);
+    let whole = whole.map_err(|_| SaveError::Stopped)?;
     // With walls it knows no tracing any more.
     watched.check()?;
     Ok(with_walls(whole))

@@ -13,7 +13,7 @@
 //! **Practice.** Only surfaces with more handles than before are looked at. Each body is tried on a copy. It is kept
 //! if there are fewer handles, as many components as before, and nothing crosses.
 
-use neurotess_mesh::{SurfaceVertex, Topology, genus_by_component, measure};
+use neurotess_mesh::{SurfaceVertex, Topology, Watch, genus_by_component, measure};
 
 use super::blend::blend;
 use super::loops::{least_radius, middle, seams, tunnels};
@@ -33,7 +33,7 @@ pub(crate) fn fill(
     work: &mut Work,
     options: &UnionOptions,
     handles_before: i64,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<Vec<Filled>, UnionError> {
     let mut filled = Vec::new();
     // Faster than all of the shape, and enough for most cells.
@@ -44,7 +44,7 @@ pub(crate) fn fill(
     let mut now = work.shape();
     for seam in seams(work) {
         while handles(&now) > handles_before
-            && let Some((shape, one)) = fill_one(work, &now, &seam, options, check)?
+            && let Some((shape, one)) = fill_one(work, &now, &seam, options, watch)?
         {
             now = shape;
             filled.push(one);
@@ -59,13 +59,13 @@ fn fill_one(
     before: &Topology,
     seam: &[u32],
     options: &UnionOptions,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<Option<(Topology, Filled)>, UnionError> {
-    check()?;
+    watch.check()?;
     let loops = tunnels(work, seam, options.fill);
     for size in SIZES {
         for around in &loops {
-            let Some(tried) = plugged(work, around, size, options, check)? else {
+            let Some(tried) = plugged(work, around, size, options, watch)? else {
                 continue;
             };
             let after = tried.shape();
@@ -86,7 +86,7 @@ fn plugged(
     around: &Loop,
     (scale, least): (f64, f64),
     options: &UnionOptions,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<Option<Work>, UnionError> {
     let least = least * least_radius(work, &around.vertices);
     let Some(body) = Ellipsoid::around(&around.points(work), scale, least) else {
@@ -100,7 +100,7 @@ fn plugged(
     let of = around.vertices.first();
     let of = of.and_then(|v| work.triangles.iter().position(|face| face.contains(v)));
     let part = of.map_or(0, |face| work.parts[face]);
-    body.body().merged(work, &names, part, options, check)
+    body.body().merged(work, &names, part, options, watch)
 }
 
 fn is_better(before: &Topology, after: &Topology) -> bool {

@@ -13,7 +13,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
 use glam::DVec3;
-use neurotess_mesh::{SurfaceMesh, SurfaceVertex, Topology, measure};
+use neurotess_mesh::{SurfaceMesh, SurfaceVertex, Topology, Watch, measure};
 
 use crate::arrange::hull;
 use crate::body::{Body, handles, is_sound};
@@ -36,12 +36,12 @@ pub(crate) fn rejoin(
     work: &mut Work,
     given: &SurfaceMesh,
     options: &UnionOptions,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<(Vec<Joined>, Vec<Part>), UnionError> {
     let given = Given::new(given)?;
     let mut joined = Vec::new();
     let mut now = work.shape();
-    while let Some((shape, one)) = join_one(work, &given, &now, options, check)? {
+    while let Some((shape, one)) = join_one(work, &given, &now, options, watch)? {
         now = shape;
         joined.push(one);
     }
@@ -59,7 +59,7 @@ fn join_one(
     given: &Given,
     before: &Topology,
     options: &UnionOptions,
-    check: &dyn Fn() -> Result<(), UnionError>,
+    watch: &Watch<'_>,
 ) -> Result<Option<(Topology, Joined)>, UnionError> {
     let (numbers, pieces) = cut_off(work);
     for (piece, part) in pieces {
@@ -74,12 +74,12 @@ fn join_one(
             .flat_map(|&size| ways().map(move |way| (size, way)))
             .flat_map(|(size, way)| REACHES.map(|reach| (size, way, reach)));
         for (size, way, reach) in tries {
-            check()?;
+            watch.check()?;
             let names = given.around(way, reach);
             let Some(body) = hull_of(&names, size) else {
                 continue;
             };
-            let Some(tried) = body.merged(work, &names, part, options, check)? else {
+            let Some(tried) = body.merged(work, &names, part, options, watch)? else {
                 continue;
             };
             let after = tried.shape();

@@ -4,10 +4,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::shapes::{BARE, assert_near, brick, inverted, merged, straight, together, tube};
 use glam::Vec3;
-use neurotess_mesh::{SurfaceMesh, SurfaceVertex};
-use neurotess_union::{
-    Kin, UnionError, UnionOptions, Why, crossing_places, union, union_stoppable,
-};
+use neurotess_mesh::{Stopped, SurfaceMesh, SurfaceVertex, Watch};
+use neurotess_union::{Kin, UnionError, UnionOptions, Why, crossing_places, union, union_watched};
 
 fn default() -> UnionOptions {
     UnionOptions::default()
@@ -37,19 +35,22 @@ fn two_crossing_tubes_become_one_body_without_a_handle() {
 fn another_thread_can_stop_it() {
     let made = |stopped| {
         let stopped = AtomicBool::new(stopped);
-        union_stoppable(&crossing_tubes(), &default(), &stopped)
+        union_watched(&crossing_tubes(), &default(), &Watch::stopped_by(&stopped))
     };
-    assert_eq!(made(true), Err(UnionError::Stopped));
+    assert_eq!(made(true), Err(UnionError::Stopped(Stopped)));
     assert_eq!(made(false), union(&crossing_tubes(), &default()));
 }
 
 #[neurotess_testing::test]
 fn the_place_of_a_crossing_names_both_samples() {
     let places = merged(&crossing_tubes(), &default()).0.report.places;
-    let searched = crossing_places(&crossing_tubes(), &AtomicBool::new(false));
+    let searched = crossing_places(&crossing_tubes(), &Watch::default());
     assert_eq!(searched.expect("searched"), places);
-    let stopped = crossing_places(&crossing_tubes(), &AtomicBool::new(true));
-    assert!(matches!(stopped, Err(UnionError::Stopped)));
+    let stopped = crossing_places(
+        &crossing_tubes(),
+        &Watch::stopped_by(&AtomicBool::new(true)),
+    );
+    assert!(matches!(stopped, Err(UnionError::Stopped(Stopped))));
     assert_eq!(places.len(), 1, "{places:?}");
     let place = &places[0];
     assert!(place.position.length() < 0.5, "{place:?}");

@@ -9,7 +9,7 @@ use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
 use neurotess::formats::{self, ReadOptions, Warning};
 use neurotess::generate::{self, GenerateOptions, Generated};
-use neurotess::mesh::CoarseMesh;
+use neurotess::mesh::{CoarseMesh, Watch};
 use neurotess::morphology::Morphology;
 use neurotess::picture::BoundingSphere;
 use neurotess::picture::bounds::bounds;
@@ -144,7 +144,8 @@ fn cell(
             ..cell
         }));
     };
-    let generate = || generate::generate_stoppable(&read.morphology, options, || 0.0, stopped);
+    let watch = Watch::stopped_by(stopped);
+    let generate = || generate::generate_watched(&read.morphology, options, &watch);
     let (generated, key) = cache
         .mesh(&read.morphology, options, generate)
         .map_err(|e| Failure(format!("{file}: {e}")))?;
@@ -184,7 +185,8 @@ pub(super) fn meshed(
     options: &GenerateOptions,
     stopped: &AtomicBool,
 ) -> Result<MeshedCell, Failure> {
-    let generated = generate::generate_stoppable(&morphology, options, || 0.0, stopped);
+    let watch = Watch::stopped_by(stopped);
+    let generated = generate::generate_watched(&morphology, options, &watch);
     let generated = generated.map_err(|e| Failure(format!("{file}: {e}")))?;
     Ok(of_mesh(file, morphology, generated))
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use neurotess::generate::Generated;
-use neurotess::mesh::SurfaceMesh;
+use neurotess::mesh::{SurfaceMesh, Watch};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
 use neurotess::union::crossing_places;
 
@@ -45,12 +45,11 @@ fn search(
 ) -> Result<Vec<Crossing>, String> {
     let mut list = Vec::new();
     for (source, generated) in cells {
-        let stopped = &*progress.canceled;
+        let watch = Watch::stopped_by(&progress.canceled);
         let level = LodCriterion::Homogeneous(LEVEL);
         let surface = Refinement::new(&generated.mesh, level, &RefineOptions::default());
-        let mesh = SurfaceMesh::collect_stoppable(&surface, stopped);
-        let mesh = mesh.ok_or_else(|| "stopped".to_owned())?;
-        let places = crossing_places(&mesh, stopped).map_err(|e| e.to_string())?;
+        let mesh = SurfaceMesh::collect_watched(&surface, &watch).map_err(|e| e.to_string())?;
+        let places = crossing_places(&mesh, &watch).map_err(|e| e.to_string())?;
         list.extend(places.into_iter().map(|place| Crossing {
             source: *source,
             place,

@@ -24,11 +24,10 @@ mod suspects;
 use std::cmp::Reverse;
 use std::ops::Range;
 
-use neurotess_mesh::{CoarseMesh, Role};
+use neurotess_mesh::{CoarseMesh, Role, Watch};
 use rayon::prelude::*;
 
 use crate::judge::refined_patches::RefinedPatches;
-use crate::stop::Stop;
 use crate::tubes::average_normals;
 use draw_in::DrawIn;
 use graph::RingGraph;
@@ -47,7 +46,7 @@ pub(crate) fn draw_in_rings(
     mesh: &mut CoarseMesh,
     forks: &[(u32, Range<u32>)],
     is_sound: impl Fn(u32) -> bool,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> Vec<u32> {
     let graph = RingGraph::new(mesh);
     let mut suspects = Suspects::new(mesh, &graph);
@@ -89,7 +88,7 @@ pub(crate) fn draw_in_rings(
     let mut drawn: Vec<(usize, DrawIn)> = order
         .into_par_iter()
         .with_max_len(1)
-        .filter(|_| !stop.asked())
+        .filter(|_| !watch.is_stopped())
         .filter_map(|number| Some((number, draw_in(mesh, &stretches, number)?)))
         .collect();
     drawn.sort_unstable_by_key(|&(number, _)| number);

@@ -45,7 +45,8 @@ mod thin_out;
 
 pub use report::{SeparatedPlace, Separation};
 
-use crate::stop::Stop;
+use neurotess_mesh::Watch;
+
 use crate::tracing::Skeleton;
 use crate::tracing::SomaSphere;
 use crate::warning::Warnings;
@@ -78,11 +79,11 @@ pub(crate) fn separate(
     soma_spheres: &[Option<SomaSphere>],
     soma_samples: &[i64],
     warnings: &mut Warnings,
-    stop: Stop<'_>,
+    watch: &Watch<'_>,
 ) -> Separated {
     let mut rods = Rods::new(skeleton, soma_spheres);
     let traced = std::mem::take(skeleton);
-    let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), stop);
+    let report = move_apart(&mut rods, Depths::new(&traced, soma_samples), watch);
     warn(&report, warnings);
     *skeleton = rods.skeleton();
     Separated {
@@ -91,7 +92,7 @@ pub(crate) fn separate(
     }
 }
 
-fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, stop: Stop<'_>) -> Separation {
+fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, watch: &Watch<'_>) -> Separation {
     let mut complete = true;
     let mut may_add = MAX_ADDED.0 * rods.count() + MAX_ADDED.1;
     for round in 0..MAX_ROUNDS {
@@ -104,11 +105,11 @@ fn move_apart(rods: &mut Rods, mut depths: Depths<'_>, stop: Stop<'_>) -> Separa
         if !found.touches() {
             break;
         }
-        complete &= solver::solve(rods, &spread, stop);
+        complete &= solver::solve(rods, &spread, watch);
         let free = room(rods);
         thin_out::thin_out(rods, &free);
         // No number of rounds sorts a crowd.
-        if !complete || stop.asked() {
+        if !complete || watch.is_stopped() {
             break;
         }
     }

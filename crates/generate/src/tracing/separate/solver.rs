@@ -2,6 +2,7 @@
 //! Chentanez, XPBD, 2016), in sweeps over elastic constraints and contacts.
 
 use glam::DVec3;
+use neurotess_mesh::Watch;
 
 use super::elastic::Elastic;
 use super::geometry::{closest, direction};
@@ -9,7 +10,6 @@ use super::rods::Rods;
 use super::search::{Found, Margin, SOMA_REACH, SomaContact, deepest, search};
 use super::side::{self, CROSSED, DEEP, Pair, Sides};
 use super::spread::{GAP, Spread};
-use crate::stop::Stop;
 
 /// Searches for contacts, at most.
 const MAX_SEARCHES: usize = 30;
@@ -36,7 +36,7 @@ const SOMA_STEP: (f64, f64) = (0.5, 0.02);
 const MAX_WAITING: usize = 10;
 
 /// Moves the points of the rods. Returns whether each search saw all contacts.
-pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
+pub(super) fn solve(rods: &mut Rods, spread: &Spread, watch: &Watch<'_>) -> bool {
     let mut solver = Solver {
         elastic: Elastic::new(rods, spread),
         pairs: Vec::new(),
@@ -52,7 +52,7 @@ pub(super) fn solve(rods: &mut Rods, spread: &Spread, stop: Stop<'_>) -> bool {
         complete &= found.complete;
         let most = if complete { MAX_SEARCHES } else { MAX_IN_CROWD };
         let improves = best.improves(rods, &found, &solver.elastic.centers);
-        if !improves || round >= most || stop.asked() {
+        if !improves || round >= most || watch.is_stopped() {
             break;
         }
         solver.strict = round < WITHOUT_MEMORY;

@@ -45,7 +45,13 @@ impl Tubes {
         let mut skeleton = Skeleton::from_nodes(self.0);
         let mut warnings = Warnings::default();
         let samples = vec![-7; spheres.len()];
-        let separated = separate(&mut skeleton, spheres, &samples, &mut warnings, Stop::NEVER);
+        let separated = separate(
+            &mut skeleton,
+            spheres,
+            &samples,
+            &mut warnings,
+            &Watch::default(),
+        );
         let parents_first =
             |(i, n): (usize, &SkeletonNode)| n.parent == NONE || (n.parent as usize) < i;
         assert!(skeleton.nodes().iter().enumerate().all(parents_first));
@@ -261,7 +267,7 @@ fn a_point_stays_if_the_shorter_way_would_touch_another_branch() {
         &[],
         &[],
         &mut Warnings::default(),
-        Stop::NEVER,
+        &Watch::default(),
     );
     assert!(separated.report.places.is_empty());
     assert!(!separated.clearance.allows(first, last));
@@ -336,7 +342,7 @@ proptest! {
         let skeleton = Skeleton::from_nodes(wander(&steps).0);
         let mut rods = Rods::new(&skeleton, &[]);
         let depths = Depths::new(&skeleton, &[]);
-        let report = move_apart(&mut rods, depths, Stop::NEVER);
+        let report = move_apart(&mut rods, depths, &Watch::default());
         let left = report.places.iter().map(|p| p.after).fold(0.0, f64::max);
         prop_assert!(left <= deepest(&rods));
         if report.complete {

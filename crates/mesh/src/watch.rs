@@ -35,7 +35,10 @@ pub enum Stage {
     Write,
 }
 
-static RUNNING: AtomicBool = AtomicBool::new(false);
+/// Another thread stopped the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("stopped")]
+pub struct Stopped;
 
 impl<'w> Watch<'w> {
     /// Work that ends soon after another thread sets `stopped`.
@@ -64,21 +67,31 @@ impl<'w> Watch<'w> {
         }
     }
 
-    pub(crate) fn flag(&self) -> &AtomicBool {
-        self.stopped.unwrap_or(&RUNNING)
+    /// Whether to stop. Loops then end early, with whatever they have, and [`check`](Self::check) after them is the error that
+    /// keeps it from being used.
+    pub fn is_stopped(&self) -> bool {
+        // Nothing else is read by it: a moment later is as good.
+        (self.stopped).is_some_and(|stopped| stopped.load(Ordering::Relaxed))
     }
 
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.flag().load(Ordering::Relaxed)
+    /// An error once the work is stopped.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn check(&self) -> Result<(), Stopped> {
+        match self.is_stopped() {
+            true => Err(Stopped),
+            false => Ok(()),
+        }
     }
 
     /// Seconds since any moment; 0 without a clock.
-    pub(crate) fn seconds(&self) -> f64 {
+    pub fn seconds(&self) -> f64 {
         self.clock.map_or(0.0, |clock| clock())
     }
 
     /// Tells how far it is.
-    pub(crate) fn tell(&self, stage: Stage, done: usize, all: usize) {
+    pub fn tell(&self, stage: Stage, done: usize, all: usize) {
         if let Some(progress) = self.progress {
             progress(Progress { stage, done, all });
         }
