@@ -68,6 +68,7 @@ def test_sections_make_a_tree(cell: nt.Morphology) -> None:
     assert (trunk.order, left.order) == (0, 1)
     assert left.length == pytest.approx(np.linalg.norm([10, 15, 3]))
     assert left.path_length == pytest.approx(trunk.length + left.length)
+    assert 0 < left.exposed_area < left.traced_area
     assert [neurite.type for neurite in cell.neurites] == [2, 3]
     assert cell.neurites[1].points.shape == (4, 3)
     assert sum(n.length for n in cell.neurites) == pytest.approx(cell.measures()["length"])

@@ -3,8 +3,8 @@
 //!
 //! **The rule.** Corners know their tracing points; a face takes all three from one of its corners. With a corner
 //! on a soma (section 0) that is this one. Otherwise it is a corner of the highest section, since sections are
-//! numbered from the soma on, and what leads from a fork to a branch is the branch's: so the area of a section is
-//! about that of its frusta. If all corners are of one section, it is the tracing point of two or three of
+//! numbered from the soma on, and the first rows of a branch are the branch's: so the area of a section is about what shows
+//! of its cones. Refinement shifts the borders of lofts by half a row for this (`refine/src/evaluate/border.rs`). If all corners are of one section, it is the tracing point of two or three of
 //! them; if these are three points, the first corner's.
 //!
 //! **Why not** the majority alone: a quad between two rings is two triangles, one with two corners on

@@ -14,8 +14,8 @@
 //! ```
 //!
 //! Readers and generators hand over flat **nodes** and get the arrays from
-//! [`Morphology::from_nodes`]. [`Measures::of`] measures a cell, the functions of [`shape`] its sections, [`sholl`]
-//! its reach and [`barcode`](mod@barcode) its branching, [`paths`] what lies between two of its locations,
+//! [`Morphology::from_nodes`]. [`Measures::of`] measures a cell, the functions of [`shape`] its sections, [`exposed_areas`]
+//! what shows of them, [`sholl`] its reach and [`barcode`](mod@barcode) its branching, [`paths`] what lies between two of its locations,
 //! and a [`Membrane`] gives places on it; [`edit`] mends tracings and [`Difference`] compares two.
 //!
 //! ```
@@ -45,6 +45,7 @@ pub mod barcode;
 mod build;
 mod diff;
 pub mod edit;
+mod exposed;
 mod file_sections;
 mod frustum;
 mod kind;
@@ -55,6 +56,7 @@ mod nearest;
 pub mod paths;
 pub mod random;
 mod sample_labels;
+mod section_ends;
 mod section_numbers;
 pub mod shape;
 pub mod sholl;
@@ -63,6 +65,7 @@ mod soma;
 
 pub use build::{BuildError, BuildNote, Built, Node, Oddity};
 pub use diff::{Difference, Differing, MatchedBy, Retyped, SomaDifference};
+pub use exposed::exposed_areas;
 pub use file_sections::Piece;
 pub use kind::NeuriteKind;
 pub use measures::{Bounds, LengthByType, Measures, SomaMeasures};
@@ -72,5 +75,6 @@ pub use model::{
     Soma, SomaKind, SomaSample,
 };
 pub use sample_labels::SampleLabels;
+pub use section_ends::{SectionEnds, SectionPart};
 pub use section_numbers::{Program, SectionNumbers, SectionPlace};
 pub use soma::{Hidden, SomaMeshError, SomaShape, soma_area_volume};

@@ -227,7 +227,7 @@ pub fn partition_asymmetries(morphology: &Morphology) -> Vec<Option<f64>> {
     children.iter().map(asymmetry).collect()
 }
 
-fn ids(morphology: &Morphology) -> impl Iterator<Item = SectionId> + use<> {
+pub(crate) fn ids(morphology: &Morphology) -> impl Iterator<Item = SectionId> + use<> {
     (0..morphology.sections.len() as u32).map(SectionId)
 }
 

@@ -19,6 +19,7 @@
 //! **Conformity.** A point of an edge depends on the edge alone: two corners and their tracing
 //! points, always taken in the edge's own direction. So faces that share an edge agree to the bit.
 
+mod border;
 mod center_line;
 mod corner;
 mod edges;
@@ -31,6 +32,7 @@ use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::fours::four;
 use crate::{Caps, Path, RefineOptions};
+pub(crate) use border::{BORDER_CUBIC, LEAST_LIFT, loft_border, shift};
 pub(crate) use center_line::{CenterLines, MAX_SWAY, hermite_tangents};
 pub(crate) use corner::{Corners, Jets};
 pub use edges::SOMA_FILLET;
@@ -121,6 +123,12 @@ impl PatchShape {
             }
         };
         radius.x
+    }
+
+    /// The y from which on vertices of a loft of so many rows show the branch.
+    pub(crate) fn border(&self, x: F32x4, rows: u32) -> F32x4 {
+        let [a, b, c, d] = &self.corners;
+        loft_border([a, b, c, d], x) + shift(a, c, rows as f32)
     }
 
     /// The radii at sides 0 and 2.

@@ -15,7 +15,9 @@ use crate::decode::{
     POINT_NARROWS, POINT_SHAPED, POINTS_OF_SPHERE, POSITION_STEPS, RADIUS_BASE, SHAPED_INSET,
     SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, SHAPED_U32S, SPHERE_U32S, TAPER_LOW_BITS, TAPER_NARROWS,
 };
-use crate::evaluate::{MAX_OFFSET, MAX_SWAY, SOMA_FILLET, STEEPEST_PROFILE};
+use crate::evaluate::{
+    BORDER_CUBIC, LEAST_LIFT, MAX_OFFSET, MAX_SWAY, SOMA_FILLET, STEEPEST_PROFILE,
+};
 use crate::level::{HIGHEST_LEVEL, SHARE, SLACK, STEEPEST};
 use crate::wgsl::{Constants, WgslFile};
 use crate::{Caps, LodCriterion, LodView, Path, RefineOptions};
@@ -115,6 +117,8 @@ pub fn constants() -> Constants {
     real("MAX_OFFSET", MAX_OFFSET);
     real("MAX_SWAY", MAX_SWAY);
     real("SOMA_FILLET", SOMA_FILLET);
+    real("LEAST_LIFT", LEAST_LIFT);
+    real("BORDER_CUBIC", BORDER_CUBIC);
     real("STEEPEST_PROFILE", STEEPEST_PROFILE);
     real("SHARE", SHARE);
     real("SLACK", SLACK);

@@ -4,7 +4,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, Vertex};
 
 use crate::evaluate::{
-    Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes,
+    Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes, loft_border,
+    shift,
 };
 use crate::fours::four;
 use crate::plan::{Edge, Grid};
@@ -44,13 +45,12 @@ impl Shown {
         let [start, end] = [tracing(mesh, edge.from), tracing(mesh, edge.to)];
         let role = |index: u32| mesh.tracing[index as usize].role;
         let [near, far] = match kind {
-            // What leads from a fork to a branch is the branch's.
-            EdgeKind::Loft => [end, end],
+            // What leads from a joint to a branch is the branch's.
             EdgeKind::Along if role(start) == Role::Joint => [end, end],
             // All of a soma's edge is the soma's, so that the color changes at the neurite's ring.
             EdgeKind::Soma if role(start) == Role::Soma => [start, start],
             EdgeKind::Soma if role(end) == Role::Soma => [end, end],
-            EdgeKind::Ring | EdgeKind::Along | EdgeKind::Soma => [start, end],
+            EdgeKind::Ring | EdgeKind::Along | EdgeKind::Loft | EdgeKind::Soma => [start, end],
         };
         [
             Self::new(mesh, options, near),
@@ -67,13 +67,12 @@ impl Shown {
         let [_, _, c, d] = points;
         let of_end = [d, c, c, d];
         let quarters = match kind {
-            PatchKind::Loft => of_end,
             PatchKind::Lateral if role(points[0]) == Role::Joint => of_end,
             PatchKind::Soma => {
                 let soma = points.iter().find(|&&point| role(point) == Role::Soma);
                 soma.map_or(points, |&soma| [soma; 4])
             }
-            PatchKind::Lateral | PatchKind::Cap => points,
+            PatchKind::Lateral | PatchKind::Loft | PatchKind::Cap => points,
         };
         four(|k| Self::new(mesh, options, quarters[k]))
     }
@@ -126,8 +125,9 @@ pub(crate) struct InnerEdges<'c> {
     curves: EdgeCurves<'c>,
     normals: EdgeNormals,
     level: u16,
-    /// What the two halves of each show.
+    /// What the two parts of each show, and from where on the second one does.
     shown: [[Shown; 2]; 4],
+    border: [f32; 4],
 }
 
 impl<'c> InnerEdges<'c> {
@@ -140,10 +140,19 @@ impl<'c> InnerEdges<'c> {
         edges: [&Edge; 4],
         [a, b]: &'c [Corners; 2],
     ) -> Self {
+        let level = edges[0].level;
+        let border = match kind {
+            EdgeKind::Loft => {
+                let border = loft_border([a, a, b, b], F32x4::ZERO) + shift(a, b, f32::from(level));
+                border.to_array()
+            }
+            _ => [0.5; 4],
+        };
         Self {
             curves: EdgeCurves::new(kind, a, b, options.path),
             normals: EdgeNormals::new(kind, a, b),
-            level: edges[0].level,
+            level,
+            border,
             shown: four(|k| Shown::of_halves(mesh, options, kind, edges[k])),
         }
     }
@@ -152,23 +161,22 @@ impl<'c> InnerEdges<'c> {
     #[inline(always)]
     pub(crate) fn vertices(&self, k: u32) -> [SurfaceVertex; 4] {
         let t = k as f32 / f32::from(self.level);
-        let half = usize::from(t >= 0.5);
+        let shown = four(|lane| &self.shown[lane][usize::from(t >= self.border[lane])]);
         let t = F32x4::splat(t);
         let jets = self.curves.at(t);
         let points = Points {
             position: jets.position,
             normal: self.normals.at(jets.derivative, t),
         };
-        let shown = four(|k| &self.shown[k][half]);
         vertices(&points, self.curves.radius(t), shown)
     }
 }
 
-/// Index in [`Shown::of_quarters`] of a vertex at column i of row j.
+/// Index in [`Shown::of_quarters`] of a vertex at column i of row j; `border`: the y from which on the second ring shows.
 #[inline(always)]
-fn quarter(grid: &Grid, i: u32, j: u32) -> usize {
+fn quarter(grid: &Grid, i: u32, j: u32, border: f32) -> usize {
     let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
-    match (x >= 0.5, y >= 0.5) {
+    match (x >= 0.5, y >= border) {
         (false, false) => 0,
         (true, false) => 1,
         (true, true) => 2,
@@ -193,7 +201,7 @@ pub(crate) fn lateral_vertices(
         let (row, radius) = (tubes.row(y), tubes.radius(y));
         for i in 1..grid.nx {
             let points = row.points(F32x4::splat(i as f32 / grid.nx as f32));
-            let quarter = quarter(grid, i, j);
+            let quarter = quarter(grid, i, j, 0.5);
             let shown = four(|k| &shown[k][quarter]);
             put([i, j], vertices(&points, radius, shown));
         }
@@ -209,8 +217,13 @@ pub(crate) fn other_vertices(
     mut put: impl FnMut([u32; 2], SurfaceVertex),
 ) {
     let shown = Shown::of_quarters(mesh, options, patch);
+    let mut borders = [0.5; 4];
     shape.for_each_inside(options, [grid.nx, grid.ny], |[i, j], points, radii| {
-        let of = four(|k| &shown[quarter(grid, i + k as u32, j)]);
+        if shape.kind == PatchKind::Loft && j == 1 {
+            let x = four(|k| (i + k as u32) as f32 / grid.nx as f32);
+            borders = shape.border(F32x4::from_array(x), grid.ny).to_array();
+        }
+        let of = four(|k| &shown[quarter(grid, i + k as u32, j, borders[k])]);
         for (i, vertex) in (i..grid.nx).zip(vertices(&points, radii, of)) {
             put([i, j], vertex);
         }
@@ -227,6 +240,10 @@ pub(crate) fn inner_vertex(
 ) -> SurfaceVertex {
     let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
     let (position, normal) = shape.interior(options, x, y);
-    let shown = Shown::of_quarters(mesh, options, patch)[quarter(grid, i, j)];
+    let border = match shape.kind {
+        PatchKind::Loft => shape.border(F32x4::splat(x), grid.ny).x,
+        _ => 0.5,
+    };
+    let shown = Shown::of_quarters(mesh, options, patch)[quarter(grid, i, j, border)];
     shown.vertex(position, normal, shape.radius(options, x, y))
 }

@@ -156,10 +156,14 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
     let normal = edge_normal(s.kind, a, b, jet.derivative, t);
-    // What leads from a fork to a branch is the branch's.
-    let is_of_end = s.kind == EDGE_LOFT || (s.kind == EDGE_ALONG && a.role == ROLE_JOINT);
+    var border = 0.5;
+    if (s.kind == EDGE_LOFT) {
+        border = loft_border(a, a, b, b, 0.0, level);
+    }
+    // What leads from a joint to a branch is the branch's.
+    let is_of_end = s.kind == EDGE_ALONG && a.role == ROLE_JOINT;
     var shown = s.end;
-    if (t < 0.5 && !is_of_end) {
+    if (t < border && !is_of_end) {
         shown = s.start;
     }
     if (s.kind == EDGE_SOMA) {
@@ -182,6 +186,33 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let axis = center_line(a, b, options.path, t).position;
     let radius = profile_radius(profile_between(a, b, options.path), t);
     return SurfacePoint(jet.position, normal, axis, radius, shown);
+}
+
+// The y from which on vertices of a loft of so many rows show the branch, at x between the trunk's corners a and b and
+// the inset's d and c. Rust twin: border.rs, with the theory.
+fn loft_border(a: Corner, b: Corner, c: Corner, d: Corner, x: f32, rows: u32) -> f32 {
+    let offset = blend(a.offset, b.offset, x);
+    let size = length(a.offset) * (1.0 - x) + length(b.offset) * x;
+    let near = blend(a.center, b.center, x) + normalize_or(offset, a.radial) * size;
+    let far = max(length(cross(near - c.center, c.tangent)) - c.radius, c.radius * 1e-3);
+    let height = inset_height(a, d) * (1.0 - x) + inset_height(b, c) * x;
+    var left = 2.0 / 3.0;
+    if (a.role == ROLE_SOMA) {
+        left = min(SOMA_FILLET * c.radius / far, left);
+    }
+    let lifted = max(height, c.radius * LEAST_LIFT);
+    let border = 1.0 / (1.0 + sqrt(BORDER_CUBIC / 3.0 * lifted / (far * left)));
+    let half = 0.5 / f32(rows);
+    return border + select(half, -half, a.role == ROLE_SOMA || c.collar < 0.0);
+}
+
+// How far an inset's corner is off the cone of the trunk's corner.
+fn inset_height(trunk: Corner, inset: Corner) -> f32 {
+    let from_center = inset.position - trunk.center;
+    if (trunk.role == ROLE_SOMA) {
+        return length(from_center) - length(trunk.offset);
+    }
+    return length(cross(from_center, trunk.tangent)) - trunk.radius;
 }
 
 // Point of the center line at a corner, and the radius there: somata have none.
@@ -210,9 +241,13 @@ fn inner_vertex(
     let y = f32(j) / f32(grid.ny);
     let shape = patch_shape(source, p);
     let inside = interior(shape, options.path, options.caps, x, y);
-    // What leads from a fork to a branch is the branch's.
-    let is_of_end = p.kind == PATCH_LOFT || (p.kind == PATCH_LATERAL && shape.a.role == ROLE_JOINT);
-    let is_second = y >= 0.5 || is_of_end;
+    var border = 0.5;
+    if (p.kind == PATCH_LOFT) {
+        border = loft_border(shape.a, shape.b, shape.c, shape.d, x, grid.ny);
+    }
+    // What leads from a joint to a branch is the branch's.
+    let is_of_end = p.kind == PATCH_LATERAL && shape.a.role == ROLE_JOINT;
+    let is_second = y >= border || is_of_end;
     var shown = p.corners.x;
     if (x >= 0.5 && !is_second) {
         shown = p.corners.y;

@@ -9,7 +9,7 @@ use serde_json::Value;
 const WORSE: f64 = 1.05;
 
 /// Figures whose sums are compared, with how much of them is a trifle in all cells together.
-const COMPARED: [(&str, f64); 12] = [
+const COMPARED: [(&str, f64); 14] = [
     ("near_2", 5.0),
     ("pairs_2", 5.0),
     ("folded_2", 5.0),
@@ -19,6 +19,8 @@ const COMPARED: [(&str, f64); 12] = [
     ("off", 1e-3),
     ("sections", 1e-3),
     ("sections_95", 1e-2),
+    ("subtrees", 1e-2),
+    ("vanished", 5.0),
     ("inside", 1e-2),
     ("inside_narrow", 1e-2),
     ("bytes", 0.1),
@@ -27,8 +29,8 @@ const COMPARED: [(&str, f64); 12] = [
 /// Markdown, a row for each cell and one of sums.
 pub(super) fn table(figures: &Value) -> String {
     let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
-    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections % | bends | volume | bytes | ms | soma: volume, area % | silhouette % | drawn out | neck | ms | simulation: pairs | pieces, genus | angle | s |\n";
-    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    text += "| cell | points | near, all, folded: 2 | 4 | off % | sections, subtrees % | vanished | bends | volume | bytes | ms | soma: volume, area % | silhouette % | drawn out | neck | ms | simulation: pairs | pieces, genus | angle | s |\n";
+    text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     for cell in cells(figures) {
         let file = cell["file"].as_str().unwrap_or_default();
         let name = Path::new(file).file_stem().unwrap_or_default();
@@ -42,13 +44,15 @@ pub(super) fn table(figures: &Value) -> String {
         let of = |key: &str| number(&simulation[key]);
         let _ = writeln!(
             text,
-            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.1} | {} | {} | {}, {} | {:.1} | {:.1} |",
+            "| {name}{open} | {} | {} | {} | {:.2} | {:.1}, {:.0}, {:.1} | {} | {:.2}, {:.2} | {:.0} | {:.1} | {:.1} | {} | {} | {}, {} | {:.1} | {:.1} |",
             cell["points"],
             counts(cell, 2),
             counts(cell, 4),
             100.0 * number(&cell["off"]),
             100.0 * number(&cell["sections"]),
             100.0 * number(&cell["sections_95"]),
+            100.0 * number(&cell["subtrees"]),
+            number(&cell["vanished"]),
             number(&cell["inside"]),
             number(&cell["inside_narrow"]),
             number(&cell["volume"]),
@@ -79,13 +83,15 @@ pub(super) fn table(figures: &Value) -> String {
     };
     let _ = writeln!(
         text,
-        "| **all** (off, sections, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | | | | | | |",
+        "| **all** (off, sections, subtrees, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0}, {:.1} | {} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | | | | | | |",
         all("points"),
         counts(2),
         counts(4),
         100.0 * all("off") / cells,
         100.0 * all("sections") / cells,
         100.0 * all("sections_95") / cells,
+        100.0 * all("subtrees") / cells,
+        all("vanished"),
         per_bend("bends", "inside"),
         per_bend("narrow_bends", "inside_narrow"),
         all("volume"),

@@ -61,6 +61,7 @@ class Morphology:
         self.id = id
         self.connectors = connectors
         self._columns: dict[str, NDArray[Any]] | None = None
+        self._exposed: NDArray[np.float64] | None = None
         self._child_ids: list[list[int]] | None = None
         self._sections: tuple[Section, ...] | None = None
         self._neurites: tuple[Neurite, ...] | None = None
@@ -161,6 +162,11 @@ class Morphology:
         if self._columns is None:
             self._columns = self._cell.sections()
         return self._columns
+
+    def _exposed_areas(self) -> NDArray[np.float64]:
+        if self._exposed is None:
+            self._exposed = self._cell.exposed_areas()
+        return self._exposed
 
     def _children(self) -> list[list[int]]:
         if self._child_ids is None:

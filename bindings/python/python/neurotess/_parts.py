@@ -162,6 +162,19 @@ class Section:
         return float(self._of("length"))
 
     @property
+    def traced_area(self) -> float:
+        """Area (µm²) of its frusta, from the point that it branches from on, without caps."""
+        return float(self._of("area"))
+
+    @property
+    def exposed_area(self) -> float:
+        """Area (µm²) of its cones outside the soma and all branches but its own: what a mesh of it is to have.
+
+        Each link has the radii of its own ends, and a side branch begins at its fork with the radius of its first point.
+        """
+        return float(self._cell._exposed_areas()[self.id])
+
+    @property
     def path_length(self) -> float:
         """Length (µm) of the way from the neurite's first point to the section's end."""
         return float(self._of("path_length"))

@@ -13,7 +13,9 @@ use std::sync::Arc;
 
 use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, Read, ReadError, ReadOptions, Warning};
-use neurotess::morphology::{Measures, Morphology, Program, shape, soma_area_volume};
+use neurotess::morphology::{
+    Measures, Morphology, Program, exposed_areas, shape, soma_area_volume,
+};
 use neurotess::output::{Existing, Output};
 use neurotess::synth;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
@@ -296,6 +298,7 @@ impl Cell {
         let orders: Vec<i64> = wide(shape::branch_orders(cell));
         sections.set_item("order", arrays::column(py, orders)?)?;
         sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
+        sections.set_item("area", arrays::column(py, shape::section_areas(cell))?)?;
         sections.set_item(
             "path_length",
             arrays::column(py, shape::path_lengths(cell))?,
@@ -312,6 +315,12 @@ impl Cell {
     }
 
     /// A dictionary for each soma.
+    /// What shows of the cones of each section (µm²).
+    fn exposed_areas(&self, py: Python<'_>) -> PyResult<Py<PyArray1<f64>>> {
+        let areas = detached(py, || exposed_areas(&self.morphology))?;
+        arrays::column(py, areas)
+    }
+
     fn somata<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let origin = self.morphology.origin;
         let one = |soma: &neurotess::morphology::Soma| {

@@ -6,7 +6,8 @@
 //!
 //! At levels 2 and 4: crossing pairs of facets within four radii of a fork, all of them, and facets folded by more than
 //! 120°. At level 4 also the volume, the share of the area near forks that is off the branches' round cones, and by how much
-//! the area of sections differs from their frusta: the median, and the 95th percentile; and how deep (radii, the median)
+//! the area of sections differs from what shows of their cones: the median, and the 95th percentile, and that of sums over
+//! subtrees; how many sections show and have no triangle; and how deep (radii, the median)
 //! the inner walls of bends away from forks are within the traced cones, of 40 to 100° and of 100 to 140°. At level 8
 //! somata: see [`soma`].
 
@@ -19,6 +20,7 @@ use neurotess::mesh::{CoarseMesh, Role, SurfaceMesh, Watch, topology};
 use neurotess::refine::{LodCriterion, RefineOptions, Refinement, pack};
 
 use facets::{crossings, folded};
+use sections::Sections;
 use tree::Tree;
 
 mod bends;
@@ -82,9 +84,13 @@ fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
         if level == 4 {
             let (volume, area) = refinement.volume_and_area();
             let off = off::share(&positions, &surface.faces.triangles, &tree);
-            let [median, worst] = sections::area_off(&surface, &morphology)?;
+            let Sections {
+                off: [median, worst],
+                subtrees,
+                vanished,
+            } = Sections::new(&surface, &morphology)?;
             line += &format!(
-                r#", "volume": {volume}, "area": {area}, "off": {off}, "sections": {median}, "sections_95": {worst}"#
+                r#", "volume": {volume}, "area": {area}, "off": {off}, "sections": {median}, "sections_95": {worst}, "subtrees": {subtrees}, "vanished": {vanished}"#
             );
             let [wide, narrow] = bends::inside(&positions, &surface.faces.triangles, &tree);
             line += &format!(

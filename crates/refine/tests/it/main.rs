@@ -3,6 +3,7 @@
 mod closed;
 mod edge_rules;
 mod judge;
+mod labels;
 mod parts;
 mod resident;
 #[cfg(feature = "testing")]
