@@ -16,9 +16,12 @@ use serde_json::{Value, json};
 
 use crate::steps::{self, Steps, cargo, output, root, target_folder};
 
-const USAGE: &str = "cargo xtask quality [--against BEFORE.json] [--page] [FILE…]";
+const USAGE: &str = "cargo xtask quality [--against BEFORE.json] [--page] [--base] [FILE…]";
 /// Where figures and table are written.
 const FOLDER: &str = "out/quality";
+
+/// Figures of a commit that all later ones are compared with, so that many small losses are seen as one.
+const BASE: &str = "benchmarks/quality_base.json";
 
 /// What stands above the table of the page.
 const PREFACE: &str = include_str!("preface.md");
@@ -30,6 +33,8 @@ struct Asked {
     against: Option<PathBuf>,
     /// Whether the table becomes `benchmarks/quality.md`.
     page: bool,
+    /// Whether the figures become the base that later ones are compared with.
+    base: bool,
     files: Vec<PathBuf>,
 }
 
@@ -40,6 +45,7 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
         match argument.as_str() {
             "--against" => asked.against = Some(arguments.next().context(USAGE)?.into()),
             "--page" => asked.page = true,
+            "--base" => asked.base = true,
             option if option.starts_with('-') => bail!("{option}: not an option\n\n{USAGE}"),
             file => asked.files.push(file.into()),
         }
@@ -47,10 +53,14 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
     if asked.files.is_empty() {
         asked.files = cells::files()?;
     }
-    let before: Option<Value> = match &asked.against {
-        Some(file) => Some(read(file)?),
-        None => None,
-    };
+    let base = root().join(BASE);
+    let mut before = vec![("the base", base.clone())];
+    before.extend(asked.against.map(|file| ("before", file)));
+    let before: anyhow::Result<Vec<(&str, Value)>> = (before.into_iter())
+        .filter(|(_, file)| !asked.base || *file != base)
+        .map(|(name, file)| Ok((name, read(&file)?)))
+        .collect();
+    let before = before?;
     let folder = root().join(FOLDER);
     fs::create_dir_all(&folder)?;
     let mut rows = Vec::new();
@@ -83,13 +93,38 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
     }
     println!("\n{}", table::table(&figures));
     println!("{FOLDER}/quality.json has the figures");
-    let Some(before) = before else { return Ok(()) };
-    let compared = table::compare(&before, &figures);
-    println!("\n{}", compared.text);
-    match compared.worse.as_slice() {
-        [] => Ok(()),
-        worse => bail!("worse than before: {}", worse.join(", ")),
+    if asked.base {
+        fs::write(base, format!("{}\n", untimed(figures.clone())))?;
     }
+    let mut worse = Vec::new();
+    for (name, before) in &before {
+        let compared = table::compare(before, &figures);
+        println!("\nbeside {name}, {}\n\n{}", before["commit"], compared.text);
+        worse.extend(
+            compared
+                .worse
+                .into_iter()
+                .map(|what| format!("{what} than {name}")),
+        );
+    }
+    match worse.as_slice() {
+        [] => Ok(()),
+        worse => bail!("worse: {}", worse.join(", ")),
+    }
+}
+
+/// Figures without times, which other machines and days have others of.
+fn untimed(mut figures: Value) -> Value {
+    let without_times = |part: &mut Value| {
+        if let Some(part) = part.as_object_mut() {
+            part.retain(|key, _| !key.ends_with("seconds"));
+        }
+    };
+    for cell in figures["cells"].as_array_mut().into_iter().flatten() {
+        without_times(&mut cell["simulation"]);
+        without_times(cell);
+    }
+    figures
 }
 
 fn read(file: &Path) -> anyhow::Result<Value> {
@@ -109,7 +144,10 @@ fn surfaces(files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
     let program = target_folder()?.join("release/examples/quality");
     let printed = output(Command::new(program).args(files))?;
     let rows: Result<Vec<Value>, _> = printed.lines().map(serde_json::from_str).collect();
-    let rows = rows?;
+    let mut rows = rows?;
+    for (row, file) in rows.iter_mut().zip(files) {
+        row["file"] = json!(file.file_name().unwrap_or_default().to_string_lossy());
+    }
     if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
         bail!("{}: {}", row["file"], row["error"]);
     }
