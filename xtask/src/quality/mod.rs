@@ -1,7 +1,6 @@
 //! `cargo xtask quality`: what meshes of real cells are worth, as one table; and whether it got worse.
 //!
-//! Figures of surfaces are those of the example `quality` of the crate `neurotess`, those of meshes for simulations of
-//! `neurotess mesh --simulation`.
+//! Figures are those of the example `quality` of the crate `neurotess`.
 
 mod cells;
 pub(crate) mod sweep;
@@ -22,6 +21,9 @@ const FOLDER: &str = "out/quality";
 
 /// Figures of a commit that all later ones are compared with, so that many small losses are seen as one.
 const BASE: &str = "benchmarks/quality_base.json";
+
+/// What is built, without what it does not need.
+const PROGRAM: &str = "-p neurotess --example quality --no-default-features --features asc,h5";
 
 /// What stands above the table of the page.
 const PREFACE: &str = include_str!("preface.md");
@@ -67,12 +69,16 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
     let mut steps = Steps::default();
     steps.step("build", build)?;
     steps.step("surfaces", || {
-        rows = surfaces(&asked.files)?;
+        rows = measured(None, &asked.files)?;
+        if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
+            bail!("{}: {}", row["file"], row["error"]);
+        }
         Ok(format!("{} cells", rows.len()))
     })?;
     steps.step("simulation", || {
-        for (row, file) in rows.iter_mut().zip(&asked.files) {
-            row["simulation"] = simulation(file, &folder)?;
+        let meshes = measured(Some("--simulated"), &asked.files)?;
+        for (row, mesh) in rows.iter_mut().zip(meshes) {
+            row["simulation"] = mesh;
         }
         Ok("a mesh for simulations of each".into())
     })?;
@@ -133,55 +139,18 @@ fn read(file: &Path) -> anyhow::Result<Value> {
 }
 
 fn build() -> anyhow::Result<String> {
-    steps::run(&mut cargo("build --release --locked -p neurotess-cli"))?;
-    steps::run(&mut cargo(
-        "build --release --locked -p neurotess --example quality",
-    ))?;
-    Ok("the program, and what measures surfaces".into())
+    steps::run(&mut cargo(&format!("build --release --locked {PROGRAM}")))?;
+    Ok("what measures surfaces".into())
 }
 
-fn surfaces(files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
+/// What the example says of each file; without a flag, of its surface.
+fn measured(flag: Option<&str>, files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
     let program = target_folder()?.join("release/examples/quality");
-    let printed = output(Command::new(program).args(files))?;
+    let printed = output(Command::new(program).args(flag).args(files))?;
     let rows: Result<Vec<Value>, _> = printed.lines().map(serde_json::from_str).collect();
     let mut rows = rows?;
     for (row, file) in rows.iter_mut().zip(files) {
         row["file"] = json!(file.file_name().unwrap_or_default().to_string_lossy());
     }
-    if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
-        bail!("{}: {}", row["file"], row["error"]);
-    }
     Ok(rows)
-}
-
-/// What the command says of a mesh for simulations.
-fn simulation(file: &Path, folder: &Path) -> anyhow::Result<Value> {
-    let program = target_folder()?.join("release/neurotess");
-    let mut command = Command::new(program);
-    command
-        .arg("mesh")
-        .arg(file)
-        .args(["--simulation", "--json", "--force", "--quiet", "-o"])
-        .arg(folder.join("simulation.ply"));
-    let printed = command.output().context("neurotess")?;
-    let Ok(report) = serde_json::from_slice::<Value>(&printed.stdout) else {
-        let said = String::from_utf8_lossy(&printed.stderr);
-        return Ok(json!({ "error": said.trim() }));
-    };
-    let cell = &report[0];
-    let number = |value: &Value| value.as_i64().unwrap_or_default();
-    let seconds: f64 = cell["seconds"].as_object().map_or(0.0, |stages| {
-        stages.values().filter_map(Value::as_f64).sum()
-    });
-    Ok(json!({
-        "closed": cell["closed"],
-        "pairs": cell["crossings"]["pairs"],
-        "pieces": cell["components"],
-        "genus": number(&cell["components"]) - number(&cell["euler"]) / 2,
-        "angle_p1": cell["quality"]["min_angle_p1"],
-        "thin_gaps": cell["quality"]["thin_gaps"],
-        "volume": cell["volume"],
-        "triangles": cell["triangles"],
-        "seconds": seconds,
-    }))
 }

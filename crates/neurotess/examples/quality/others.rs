@@ -4,6 +4,7 @@
 use std::collections::hash_map::DefaultHasher;
 use std::hash::Hasher;
 use std::sync::Arc;
+use std::time::Instant;
 
 use neurotess::generate::{Crossings, GenerateOptions, Smooth, SomaKeep, SomaMethod, generate};
 use neurotess::mesh::{ByteWriter, SurfaceMesh};
@@ -81,24 +82,27 @@ pub(crate) fn separated(morphology: &Morphology) -> Result<String, Box<dyn std::
     Ok(line)
 }
 
-/// A mesh for simulations: whether it is closed, its pieces, holes, triangles and volume, and their shapes.
+/// A mesh for simulations: whether it is closed, its pieces, holes, triangles and volume, their shapes, and the time it takes.
 pub(crate) fn simulated(morphology: &Morphology) -> Result<String, Box<dyn std::error::Error>> {
+    let clock = Instant::now();
     let morphology = Arc::new(morphology.clone());
     let cell = mesh_watched(morphology, &MeshOptions::simulation(), &Watch::default())?;
     let surface = cell.surface();
     let report = cell.report_of(&surface);
+    let seconds = clock.elapsed().as_secs_f64();
     let (volume, _) = surface.volume_and_area();
+    let genus = report.components as i64 - report.euler / 2;
     let mut line = format!(
-        r#", "closed": {}, "pieces": {}, "euler": {}, "volume": {volume}, "warnings": {}"#,
+        r#", "closed": {}, "pieces": {}, "genus": {genus}, "volume": {volume}, "warnings": {}, "seconds": {seconds}"#,
         report.closed,
         report.components,
-        report.euler,
         report.warnings.len(),
     );
     if let Some(merged) = surface.merged() {
         let report = &merged.report;
         line += &format!(
-            r#", "triangles": {}, "places": {}, "pressed": {}, "filled": {}, "joined": {}, "dropped": {}, "changed": {}"#,
+            r#", "pairs": {}, "triangles": {}, "places": {}, "pressed": {}, "filled": {}, "joined": {}, "dropped": {}, "changed": {}"#,
+            report.pairs,
             merged.mesh.faces.triangles.len(),
             report.places.len(),
             report.pressed_places.len(),
@@ -110,7 +114,7 @@ pub(crate) fn simulated(morphology: &Morphology) -> Result<String, Box<dyn std::
     }
     if let Some(quality) = &report.quality {
         line += &format!(
-            r#", "angle": {}, "angle_p1": {}, "angle_median": {}, "aspect_p99": {}, "gaps": {}"#,
+            r#", "angle": {}, "angle_p1": {}, "angle_median": {}, "aspect_p99": {}, "thin_gaps": {}"#,
             quality.min_angle,
             quality.min_angle_p1,
             quality.min_angle_median,

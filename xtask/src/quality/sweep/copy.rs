@@ -8,6 +8,7 @@ use anyhow::{Context, bail};
 use serde_json::Value;
 use walkdir::WalkDir;
 
+use super::super::PROGRAM;
 use super::rewrite::{Excluded, Knob, Rewritten, Sources, rewrite};
 use crate::steps::{self, output, root};
 
@@ -15,8 +16,6 @@ use crate::steps::{self, output, root};
 pub(super) const FOLDER: &str = "target/sweep";
 /// Crates whose numbers are swept.
 const CRATES: [&str; 2] = ["generate", "union"];
-/// What is built: the program without what it does not need.
-const BUILD: &str = "-p neurotess --example quality --no-default-features --features asc,h5";
 
 /// A program that measures, and the numbers that it can change.
 pub(super) struct Program {
@@ -56,7 +55,7 @@ pub(super) fn program() -> anyhow::Result<Program> {
         if said.status.success() {
             cargo
                 .args("build --release --locked".split(' '))
-                .args(BUILD.split(' '));
+                .args(PROGRAM.split(' '));
             steps::run(&mut cargo)?;
             return Ok(Program {
                 file: build.join("release/examples/quality"),
