@@ -22,7 +22,7 @@ pub(crate) struct SomaRequest<'a> {
     pub(crate) attempts: u32,
 }
 
-/// Tries before a surface with folds is handed back.
+/// Tries before a surface with folds is handed back. A guard.
 pub(crate) const ATTEMPTS: u32 = 3;
 
 /// A soma's surface in µm.
