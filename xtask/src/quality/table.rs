@@ -187,18 +187,20 @@ pub(super) fn compare(before: &Value, after: &Value) -> Compared {
     let trifles = COMPARED.into_iter();
     let rest = ["volume", "seconds"].map(|key| (key, f64::INFINITY));
     for (key, trifle) in trifles.chain(rest) {
+        // Figures of earlier commits may lack some, and the base has no times.
+        if pairs.iter().all(|(was, _)| was[key].is_null()) {
+            continue;
+        }
         let _ = write!(compared.text, "| {key} |");
         for (name, held_out) in GROUPS {
             let of = pairs
                 .iter()
                 .filter(|(_, is)| is_held_out(file(is)) == held_out);
             let (was, is): (Vec<&Value>, Vec<&Value>) = of.copied().unzip();
-            // Figures of earlier commits may lack some.
-            let known = was.iter().any(|cell| !cell[key].is_null());
             let [was, is] = [sum(&was, key), sum(&is, key)];
             let ratio = is / was.max(1e-12);
             let _ = write!(compared.text, " {was:.3} | {is:.3} | {ratio:.3} |");
-            if known && is > WORSE * was && is - was > trifle {
+            if is > WORSE * was && is - was > trifle {
                 compared.worse.push(format!("{key} ({name})"));
             }
         }

@@ -1,7 +1,7 @@
 //! Numbers in sources become calls of `knob`, which changes one of them while the program runs.
 //!
 //! Constants that are numbers become functions of their names; those of several numbers are changed as one, but for tables
-//! of indices. Of code each number becomes a call: 0, ½, and 1 to 4 are no choices.
+//! of indices. Of code each number becomes a call: ½ and whole ones up to 8 are no choices.
 
 use std::collections::{BTreeSet, HashMap};
 

@@ -105,14 +105,13 @@ pub(super) fn number(text: &str) -> usize {
     end
 }
 
-/// Whether a number in code is no choice.
+/// Whether a number in code is no choice: ½, or a whole one up to 8, as in formulas.
 pub(super) fn is_plain(digits: &str) -> bool {
     let digits = digits
         .split('f')
         .next()
         .unwrap_or_default()
         .replace('_', "");
-    digits
-        .parse::<f64>()
-        .is_ok_and(|value| [0.0, 0.5, 1.0, 2.0, 3.0, 4.0].contains(&value))
+    let is_plain = |value: f64| value == 0.5 || value.fract() == 0.0 && value <= 8.0;
+    digits.parse().is_ok_and(is_plain)
 }
