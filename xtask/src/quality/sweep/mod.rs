@@ -49,7 +49,8 @@ pub(crate) fn run(arguments: impl Iterator<Item = String>) -> anyhow::Result<()>
         .map(|(number, knob)| (number, knob.name.as_str()))
         .filter(|(_, name)| is_asked(name))
         .collect();
-    for way in Way::ALL {
+    let is_needed = |way: &Way| asked.iter().any(|(_, name)| way.shows(name));
+    for way in Way::ALL.into_iter().filter(is_needed) {
         let files = match way {
             _ if !files.is_empty() => files.clone(),
             Way::Digests => cells::tuning()?,
