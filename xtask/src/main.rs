@@ -55,10 +55,11 @@ const USAGE: &str = "cargo xtask COMMAND
             a folder that tests and measures on a machine with graphics hardware and nothing but a driver:
             out/gpu-bundle, to be started by its run.sh
   gpu-page  put the figures of such a run, FILE.json, into benchmarks/gpu.md
-  sweep     the same figures of surfaces with a number of the code times factors, as in
-            generate/plan/zone::MAX_RATIO 0.5 2; a copy is built, the checkout stays as it is
-  quality   what meshes of real cells are worth, as a table: crossings, folds, meshes for simulations; with
-            --against BEFORE.json whether sums got worse by more than 5 %; with --page benchmarks/quality.md
+  sweep     which numbers of generate and union move these figures: each times 0.7 and 1.3, or as in
+            generate/plan/zone 0.5 2; one copy is built, the checkout stays as it is
+  quality   what meshes of real cells are worth, as a table: crossings, folds, meshes for simulations; and
+            whether sums got worse by more than 5 % than the recorded base, with --against BEFORE.json
+            also than those; with --page benchmarks/quality.md, with --base a new base
   bench     time reading and meshing beside other tools; figures in out/bench/benchmarks.md
   architecture
             who knows whom among crates, folders and files; whether the files that pages name are there

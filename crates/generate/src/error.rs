@@ -3,7 +3,7 @@
 use neurotess_mesh::Stopped;
 
 /// Largest coordinate or radius (µm): a kilometer a thousand times over. Products of three still have
-/// room in 32 bits.
+/// room in 32 bits. A guard.
 pub(crate) const LARGEST: f64 = 1e12;
 
 /// Why there is no mesh.

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use glam::DVec2;
 
-/// No edge is cut into more pieces.
+/// No edge is cut into more pieces. A guard.
 const MAX_PIECES: f64 = 64.0;
 
 /// How many sides the polygons around neurites get when the mesh is refined: each ring has four edges, cut into

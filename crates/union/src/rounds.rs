@@ -16,14 +16,14 @@ const EXACT_ROUNDS: u32 = 2;
 
 /// Merging is given up where a round leaves this many times the crossing pairs that there were, and one more for each
 /// face: where rounds make crossings they multiply, and so does memory. A few pairs may become ten times as many and still
-/// come to nothing: `simple.asc` with its points moved by 0.6 radii has 68 after a round.
+/// come to nothing: `simple.asc` with its points moved by 0.6 radii has 68 after a round. A guard.
 pub(crate) const MAX_GROWTH: usize = 4;
 
-/// Most rings of neighbors that an arrangement is tried with, before it is tried with the whole surface.
+/// Most rings of neighbors that an arrangement is tried with, before it is tried with the whole surface. A guard.
 const MAX_RINGS: u32 = 4;
 
 /// How often what crosses is pressed in, by a thousandth of its radius more each time, where even the whole surface could
-/// not be arranged. Tuned by nothing: no surface is known to need it.
+/// not be arranged. Tuned by nothing: no surface is known to need it. A guard.
 const MAX_PRESSES: u32 = 4;
 
 /// Merges surfaces at the faces of `pairs`, which cross; returns what still crosses. It is given up once a round leaves
@@ -56,7 +56,7 @@ pub(crate) fn merge(
         let last = report.rounds == options.rounds;
         mend(work, if last { 0.0 } else { needles }, report);
         // What is finer stays: collapsing may be what made the new crossings.
-        needles *= 0.6;
+        needles *= 0.5;
         pairs = work.crossings_of_changed();
         let pressed = touch::press(work, &pairs, &faces);
         if pressed > 0 {

@@ -1,7 +1,6 @@
 //! `cargo xtask quality`: what meshes of real cells are worth, as one table; and whether it got worse.
 //!
-//! Figures of surfaces are those of the example `quality` of the crate `neurotess`, those of meshes for simulations of
-//! `neurotess mesh --simulation`.
+//! Figures are those of the example `quality` of the crate `neurotess`.
 
 mod cells;
 pub(crate) mod sweep;
@@ -16,9 +15,15 @@ use serde_json::{Value, json};
 
 use crate::steps::{self, Steps, cargo, output, root, target_folder};
 
-const USAGE: &str = "cargo xtask quality [--against BEFORE.json] [--page] [FILE…]";
+const USAGE: &str = "cargo xtask quality [--against BEFORE.json] [--page] [--base] [FILE…]";
 /// Where figures and table are written.
 const FOLDER: &str = "out/quality";
+
+/// Figures of a commit that all later ones are compared with, so that many small losses are seen as one.
+const BASE: &str = "benchmarks/quality_base.json";
+
+/// What is built, without what it does not need.
+const PROGRAM: &str = "-p neurotess --example quality --no-default-features --features asc,h5";
 
 /// What stands above the table of the page.
 const PREFACE: &str = include_str!("preface.md");
@@ -30,6 +35,8 @@ struct Asked {
     against: Option<PathBuf>,
     /// Whether the table becomes `benchmarks/quality.md`.
     page: bool,
+    /// Whether the figures become the base that later ones are compared with.
+    base: bool,
     files: Vec<PathBuf>,
 }
 
@@ -40,6 +47,7 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
         match argument.as_str() {
             "--against" => asked.against = Some(arguments.next().context(USAGE)?.into()),
             "--page" => asked.page = true,
+            "--base" => asked.base = true,
             option if option.starts_with('-') => bail!("{option}: not an option\n\n{USAGE}"),
             file => asked.files.push(file.into()),
         }
@@ -47,22 +55,30 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
     if asked.files.is_empty() {
         asked.files = cells::files()?;
     }
-    let before: Option<Value> = match &asked.against {
-        Some(file) => Some(read(file)?),
-        None => None,
-    };
+    let base = root().join(BASE);
+    let mut before = vec![("the base", base.clone())];
+    before.extend(asked.against.map(|file| ("before", file)));
+    let before: anyhow::Result<Vec<(&str, Value)>> = (before.into_iter())
+        .filter(|(_, file)| !asked.base || *file != base)
+        .map(|(name, file)| Ok((name, read(&file)?)))
+        .collect();
+    let before = before?;
     let folder = root().join(FOLDER);
     fs::create_dir_all(&folder)?;
     let mut rows = Vec::new();
     let mut steps = Steps::default();
     steps.step("build", build)?;
     steps.step("surfaces", || {
-        rows = surfaces(&asked.files)?;
+        rows = measured(None, &asked.files)?;
+        if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
+            bail!("{}: {}", row["file"], row["error"]);
+        }
         Ok(format!("{} cells", rows.len()))
     })?;
     steps.step("simulation", || {
-        for (row, file) in rows.iter_mut().zip(&asked.files) {
-            row["simulation"] = simulation(file, &folder)?;
+        let meshes = measured(Some("--simulated"), &asked.files)?;
+        for (row, mesh) in rows.iter_mut().zip(meshes) {
+            row["simulation"] = mesh;
         }
         Ok("a mesh for simulations of each".into())
     })?;
@@ -83,13 +99,38 @@ pub(crate) fn run(mut arguments: impl Iterator<Item = String>) -> anyhow::Result
     }
     println!("\n{}", table::table(&figures));
     println!("{FOLDER}/quality.json has the figures");
-    let Some(before) = before else { return Ok(()) };
-    let compared = table::compare(&before, &figures);
-    println!("\n{}", compared.text);
-    match compared.worse.as_slice() {
-        [] => Ok(()),
-        worse => bail!("worse than before: {}", worse.join(", ")),
+    if asked.base {
+        fs::write(base, format!("{}\n", untimed(figures.clone())))?;
     }
+    let mut worse = Vec::new();
+    for (name, before) in &before {
+        let compared = table::compare(before, &figures);
+        println!("\nbeside {name}, {}\n\n{}", before["commit"], compared.text);
+        worse.extend(
+            compared
+                .worse
+                .into_iter()
+                .map(|what| format!("{what} than {name}")),
+        );
+    }
+    match worse.as_slice() {
+        [] => Ok(()),
+        worse => bail!("worse: {}", worse.join(", ")),
+    }
+}
+
+/// Figures without times, which other machines and days have others of.
+fn untimed(mut figures: Value) -> Value {
+    let without_times = |part: &mut Value| {
+        if let Some(part) = part.as_object_mut() {
+            part.retain(|key, _| !key.ends_with("seconds"));
+        }
+    };
+    for cell in figures["cells"].as_array_mut().into_iter().flatten() {
+        without_times(&mut cell["simulation"]);
+        without_times(cell);
+    }
+    figures
 }
 
 fn read(file: &Path) -> anyhow::Result<Value> {
@@ -98,52 +139,18 @@ fn read(file: &Path) -> anyhow::Result<Value> {
 }
 
 fn build() -> anyhow::Result<String> {
-    steps::run(&mut cargo("build --release --locked -p neurotess-cli"))?;
-    steps::run(&mut cargo(
-        "build --release --locked -p neurotess --example quality",
-    ))?;
-    Ok("the program, and what measures surfaces".into())
+    steps::run(&mut cargo(&format!("build --release --locked {PROGRAM}")))?;
+    Ok("what measures surfaces".into())
 }
 
-fn surfaces(files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
+/// What the example says of each file; without a flag, of its surface.
+fn measured(flag: Option<&str>, files: &[PathBuf]) -> anyhow::Result<Vec<Value>> {
     let program = target_folder()?.join("release/examples/quality");
-    let printed = output(Command::new(program).args(files))?;
+    let printed = output(Command::new(program).args(flag).args(files))?;
     let rows: Result<Vec<Value>, _> = printed.lines().map(serde_json::from_str).collect();
-    let rows = rows?;
-    if let Some(row) = rows.iter().find(|row| row["error"].is_string()) {
-        bail!("{}: {}", row["file"], row["error"]);
+    let mut rows = rows?;
+    for (row, file) in rows.iter_mut().zip(files) {
+        row["file"] = json!(file.file_name().unwrap_or_default().to_string_lossy());
     }
     Ok(rows)
-}
-
-/// What the command says of a mesh for simulations.
-fn simulation(file: &Path, folder: &Path) -> anyhow::Result<Value> {
-    let program = target_folder()?.join("release/neurotess");
-    let mut command = Command::new(program);
-    command
-        .arg("mesh")
-        .arg(file)
-        .args(["--simulation", "--json", "--force", "--quiet", "-o"])
-        .arg(folder.join("simulation.ply"));
-    let printed = command.output().context("neurotess")?;
-    let Ok(report) = serde_json::from_slice::<Value>(&printed.stdout) else {
-        let said = String::from_utf8_lossy(&printed.stderr);
-        return Ok(json!({ "error": said.trim() }));
-    };
-    let cell = &report[0];
-    let number = |value: &Value| value.as_i64().unwrap_or_default();
-    let seconds: f64 = cell["seconds"].as_object().map_or(0.0, |stages| {
-        stages.values().filter_map(Value::as_f64).sum()
-    });
-    Ok(json!({
-        "closed": cell["closed"],
-        "pairs": cell["crossings"]["pairs"],
-        "pieces": cell["components"],
-        "genus": number(&cell["components"]) - number(&cell["euler"]) / 2,
-        "angle_p1": cell["quality"]["min_angle_p1"],
-        "thin_gaps": cell["quality"]["thin_gaps"],
-        "volume": cell["volume"],
-        "triangles": cell["triangles"],
-        "seconds": seconds,
-    }))
 }

@@ -5,6 +5,11 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::cells::is_held_out;
+
+/// Sums are made of cells that numbers are chosen by, and of those that are held out.
+const GROUPS: [(&str, bool); 2] = [("tuning", false), ("held out", true)];
+
 /// How much worse a sum may be.
 const WORSE: f64 = 1.05;
 
@@ -26,15 +31,17 @@ const COMPARED: [(&str, f64); 14] = [
     ("bytes", 0.1),
 ];
 
-/// Markdown, a row for each cell and one of sums.
+/// Markdown, a row for each cell and two of sums.
 pub(super) fn table(figures: &Value) -> String {
     let mut text = format!("{}.\n\n", figures["commit"].as_str().unwrap_or_default());
     text += "| cell | points | near, all, folded: 2 | 4 | off % | sections, subtrees % | vanished | bends | volume | bytes | ms | soma: volume, area % | silhouette % | drawn out | neck | ms | simulation: pairs | pieces, genus | angle | s |\n";
     text += "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
     for cell in cells(figures) {
-        let file = cell["file"].as_str().unwrap_or_default();
-        let name = Path::new(file).file_stem().unwrap_or_default();
-        let name: String = name.to_string_lossy().chars().take(20).collect();
+        let name = Path::new(file(cell)).file_stem().unwrap_or_default();
+        let mut name: String = name.to_string_lossy().chars().take(20).collect();
+        if is_held_out(file(cell)) {
+            name += ", held out";
+        }
         let closed = [&cell["closed_2"], &cell["closed_4"]];
         let open = match closed.iter().all(|closed| closed.as_bool() == Some(true)) {
             true => "",
@@ -66,9 +73,16 @@ pub(super) fn table(figures: &Value) -> String {
             of("seconds"),
         );
     }
-    let all = |key: &str| sum(figures, key);
-    let cells_of = cells(figures);
-    let cells = cells_of.len().max(1) as f64;
+    for (name, held_out) in GROUPS {
+        text += &sums(name, &cells_of(figures, held_out));
+    }
+    text
+}
+
+/// The row of sums of some cells.
+fn sums(name: &str, cells: &[&Value]) -> String {
+    let all = |key: &str| sum(cells, key);
+    let mean = |key: &str| sum(cells, key) / cells.len().max(1) as f64;
     let counts = |level: u32| {
         ["near", "pairs", "folded"]
             .map(|what| all(&format!("{what}_{level}")).to_string())
@@ -76,29 +90,27 @@ pub(super) fn table(figures: &Value) -> String {
     };
     // Cells count by their bends.
     let per_bend = |count: &str, inside: &str| {
-        let sums = cells_of
+        let sums = cells
             .iter()
             .map(|cell| number(&cell[count]) * number(&cell[inside]));
         sums.sum::<f64>() / all(count).max(1.0)
     };
-    let _ = writeln!(
-        text,
-        "| **all** (off, sections, subtrees, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0}, {:.1} | {} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | | | | | | |",
+    format!(
+        "| **{name}** (off, sections, subtrees, bends, bytes: mean) | {} | {} | {} | {:.2} | {:.1}, {:.0}, {:.1} | {} | {:.2}, {:.2} | {:.0} | {:.1} | {:.0} | | | | | | | | | |\n",
         all("points"),
         counts(2),
         counts(4),
-        100.0 * all("off") / cells,
-        100.0 * all("sections") / cells,
-        100.0 * all("sections_95") / cells,
-        100.0 * all("subtrees") / cells,
+        100.0 * mean("off"),
+        100.0 * mean("sections"),
+        100.0 * mean("sections_95"),
+        100.0 * mean("subtrees"),
         all("vanished"),
         per_bend("bends", "inside"),
         per_bend("narrow_bends", "inside_narrow"),
         all("volume"),
-        all("bytes") / cells,
+        mean("bytes"),
         1e3 * all("seconds"),
-    );
-    text
+    )
 }
 
 /// A soma's figures: by how much volume, area and silhouette (median, largest) are off what was traced, how far it is drawn
@@ -145,30 +157,20 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_default()
 }
 
-fn sum(figures: &Value, key: &str) -> f64 {
-    cells(figures).iter().map(|cell| number(&cell[key])).sum()
+/// Those that are held out, or the others.
+fn cells_of(figures: &Value, held_out: bool) -> Vec<&Value> {
+    let cells = cells(figures).iter();
+    cells
+        .filter(|cell| is_held_out(file(cell)) == held_out)
+        .collect()
 }
 
-/// Sums with other values of a number, as shares of those with the first one.
-pub(super) fn beside(measured: &[(String, Value)]) -> String {
-    let mut text = String::from("| value |");
-    for (key, _) in COMPARED {
-        let _ = write!(text, " {key} |");
-    }
-    text += " volume | seconds |\n| --- |";
-    text += &" ---: |".repeat(COMPARED.len() + 2);
-    let keys = COMPARED
-        .iter()
-        .map(|(key, _)| *key)
-        .chain(["volume", "seconds"]);
-    for (value, figures) in measured {
-        let _ = write!(text, "\n| {value} |");
-        for key in keys.clone() {
-            let (was, is) = (sum(&measured[0].1, key), sum(figures, key));
-            let _ = write!(text, " {:.3} |", is / was.max(1e-12));
-        }
-    }
-    text
+fn file(cell: &Value) -> &str {
+    cell["file"].as_str().unwrap_or_default()
+}
+
+fn sum(cells: &[&Value], key: &str) -> f64 {
+    cells.iter().map(|cell| number(&cell[key])).sum()
 }
 
 /// Two tables beside one another.
@@ -178,49 +180,52 @@ pub(super) struct Compared {
     pub(super) worse: Vec<String>,
 }
 
-/// Compares sums; a mesh that opens, or that solvers would not take any more, is worse, too.
+/// Compares sums over cells that are in both; a mesh that opens, or that solvers would not take any more, is worse, too.
 pub(super) fn compare(before: &Value, after: &Value) -> Compared {
+    let known = |cell: &&Value| cells(before).iter().any(|was| file(was) == file(cell));
+    let pairs: Vec<(&Value, &Value)> = (cells(after).iter().filter(known))
+        .filter_map(|is| Some((cells(before).iter().find(|was| file(was) == file(is))?, is)))
+        .collect();
     let mut compared = Compared {
-        text: "| sum | before | after | ratio |\n| --- | ---: | ---: | ---: |\n".into(),
+        text: "| sum | tuning: before | after | ratio | held out: before | after | ratio |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n".into(),
         worse: Vec::new(),
     };
-    for (key, trifle) in COMPARED {
-        let [was, is] = [before, after].map(|figures| sum(figures, key));
-        row(&mut compared.text, key, was, is);
-        // Figures of earlier commits may lack some.
-        let known = cells(before).iter().any(|cell| !cell[key].is_null());
-        if known && is > WORSE * was && is - was > trifle {
-            compared.worse.push(key.to_owned());
+    let trifles = COMPARED.into_iter();
+    let rest = ["volume", "seconds"].map(|key| (key, f64::INFINITY));
+    for (key, trifle) in trifles.chain(rest) {
+        // Figures of earlier commits may lack some, and the base has no times.
+        if pairs.iter().all(|(was, _)| was[key].is_null()) {
+            continue;
         }
+        let _ = write!(compared.text, "| {key} |");
+        for (name, held_out) in GROUPS {
+            let of = pairs
+                .iter()
+                .filter(|(_, is)| is_held_out(file(is)) == held_out);
+            let (was, is): (Vec<&Value>, Vec<&Value>) = of.copied().unzip();
+            let [was, is] = [sum(&was, key), sum(&is, key)];
+            let ratio = is / was.max(1e-12);
+            let _ = write!(compared.text, " {was:.3} | {is:.3} | {ratio:.3} |");
+            if is > WORSE * was && is - was > trifle {
+                compared.worse.push(format!("{key} ({name})"));
+            }
+        }
+        compared.text.push('\n');
     }
-    for key in ["volume", "seconds"] {
-        let [was, is] = [before, after].map(|figures| sum(figures, key));
-        row(&mut compared.text, key, was, is);
-    }
-    for (was, is) in cells(before).iter().zip(cells(after)) {
+    for (was, is) in pairs {
         let opens = |key: &str| was[key].as_bool() == Some(true) && is[key].as_bool() != Some(true);
         let of_simulation = |cell: &Value| {
             let simulation = &cell["simulation"];
             simulation["closed"].as_bool() == Some(true) && simulation["pairs"].as_i64() == Some(0)
         };
         if opens("closed_2") || opens("closed_4") {
-            compared.worse.push(format!("{} opens", is["file"]));
+            compared.worse.push(format!("{} opens", file(is)));
         }
         if of_simulation(was) && !of_simulation(is) {
-            compared
-                .worse
-                .push(format!("{} for simulations", is["file"]));
+            compared.worse.push(format!("{} for simulations", file(is)));
         }
     }
     compared
-}
-
-fn row(text: &mut String, key: &str, was: f64, is: f64) {
-    let _ = writeln!(
-        text,
-        "| {key} | {was:.3} | {is:.3} | {:.3} |",
-        is / was.max(1e-12)
-    );
 }
 
 #[cfg(test)]
@@ -240,9 +245,9 @@ mod tests {
         let before = figures(1000, true, 0);
         let worse = |after: &Value| compare(&before, after).worse;
         assert!(worse(&figures(1049, true, 0)).is_empty());
-        assert_eq!(worse(&figures(1051, true, 0)), ["folded_2"]);
-        assert_eq!(worse(&figures(900, false, 0)), ["\"a.swc\" opens"]);
-        assert_eq!(worse(&figures(900, true, 1)), ["\"a.swc\" for simulations"]);
+        assert_eq!(worse(&figures(1051, true, 0)), ["folded_2 (tuning)"]);
+        assert_eq!(worse(&figures(900, false, 0)), ["a.swc opens"]);
+        assert_eq!(worse(&figures(900, true, 1)), ["a.swc for simulations"]);
     }
 
     #[test]

@@ -11,20 +11,13 @@
 use glam::DVec3;
 
 use super::ForkChoice;
+use super::clearance::{CLEAR, FREE_WAY};
 use super::cone::{RoundCone, distance};
-use super::leave::{AHEAD, CLEAR};
 use super::planner::{End, PathInset, Planner, Start, Way};
 use super::shape::InsetShape;
-use super::zone::Zone;
+use super::zone::{MAX_RATIO, Zone};
 use crate::tracing::{NONE, Skeleton};
 
-/// A parent may be this much thicker than the trunk. Up to 1.05, as branches of parents, six forks of twelve cells
-/// have 3.7 % more of their area off the blended surface in the mean, and none less.
-const MAX_THICK: f64 = 1.2;
-/// The fork itself is the trunk if it is at most this much thicker than the children. Without it eleven forks of the
-/// twelve cells and one of the sample `granule` have 1.1 % more of their area off in the mean; with 2, five have 1.9 %
-/// more.
-const MAX_WIDENED: f64 = 1.5;
 /// Way that a parent needs between its inset and the fork before, in radii of either. With half of it 29 files have as
 /// many pairs near forks, and at level 4 1 % more folds.
 const MIN_WAY: f64 = 3.0;
@@ -40,8 +33,8 @@ pub(crate) fn is_straight_across(skeleton: &Skeleton, fork: u32) -> bool {
         return false;
     };
     let [a, b] = [a, b].map(|child| skeleton.node(child));
-    let trunk = here.radius.min(MAX_WIDENED * a.radius.min(b.radius));
-    if parent.radius >= MAX_THICK * trunk {
+    let trunk = here.radius.min(MAX_RATIO * a.radius.min(b.radius));
+    if parent.radius >= MAX_RATIO * trunk {
         return false;
     }
     let [a, b, up] = [a, b, parent].map(|node| (node.center - here.center).normalize_or_zero());
@@ -153,7 +146,7 @@ impl Planner<'_> {
         let clear = |node: u32| {
             let node = self.base.node(node);
             let beyond = (node.center - shape.center).dot(shape.direction);
-            beyond > shape.reach + AHEAD * zone.radius.max(node.radius)
+            beyond > shape.reach + FREE_WAY * zone.radius.max(node.radius)
                 && distance(cones, node.center) > CLEAR * node.radius
         };
         let mut parents = self.parents(zone.child);

@@ -6,6 +6,8 @@ use super::zone::Zone;
 /// Zones share their rings if their branches leave at least this far apart around the trunk (cosine
 /// of 60°).
 const MAX_ALIKE: f64 = 0.5;
+/// Lengths (µm) below this one are rounding. A guard.
+const ROUNDING: f64 = 1e-9;
 /// Branches between the same two rings at most: a ring has four sides, and one stays free to turn.
 const MAX_SHARED: usize = 3;
 
@@ -24,7 +26,7 @@ pub(crate) fn arrange(mut zones: Vec<Zone>, trunk: &Polyline) -> Result<Vec<Grou
     let mut crowded = Vec::new();
     for zone in zones {
         match groups.pop() {
-            Some(group) if zone.low < group.high - 1e-9 => {
+            Some(group) if zone.low < group.high - ROUNDING => {
                 if fits(&zone, &group, trunk) {
                     groups.push(joined(group, zone));
                     continue;
@@ -91,8 +93,7 @@ fn part(
     };
     let up = ahead.min(wanted);
     let down = overlap - up;
-    let most = 1.5 * zone.trunk_radius + zone.radius;
-    if up < -1e-9 || down > behind + 1e-9 || up.max(down) > most {
+    if up < -ROUNDING || down > behind + ROUNDING {
         return Err((group, zone.fork));
     }
     zone.shift(up, trunk);

@@ -13,6 +13,7 @@
 use glam::DVec3;
 
 use super::path::{Path, Plan, PlannedRing, RingKind};
+use super::shape::is_straight_back;
 
 /// Turns sharper than this get two rings: cosine of 60°, where one ring would narrow the tube by 13 %.
 const SHARP: f64 = 0.5;
@@ -108,9 +109,9 @@ impl Bend {
         }
         let tip = (incoming - outgoing).try_normalize()?;
         let along = incoming + outgoing;
-        let along = match along.length() > 0.1 {
-            true => along,
-            false => ring.normal,
+        let along = match is_straight_back(along) {
+            true => ring.normal,
+            false => along,
         };
         let along = (along - tip * along.dot(tip)).try_normalize()?;
         let turn = incoming.angle_between(outgoing);

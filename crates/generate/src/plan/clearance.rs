@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
-/// Disks that follow one another are clear by this factor: a twentieth of what is left between them.
-const CLEAR: f64 = 1.05;
+/// What is clear of something else is so by this factor: disks that follow one another, and a branch's rings of their trunk.
+pub(super) const CLEAR: f64 = 1.05;
+/// Free way between a ring and the joint, zone or inset before it, in radii.
+pub(super) const FREE_WAY: f64 = 0.35;
 
 /// The disk of a ring.
 #[derive(Clone, Copy, Debug)]

@@ -78,8 +78,12 @@ pub(crate) fn distance(cones: &[RoundCone], p: DVec3) -> f64 {
     least
 }
 
-/// Unit direction in which the distance from the union grows, by differences over `step` (µm).
-pub(crate) fn outwards(cones: &[RoundCone], p: DVec3, step: f64) -> DVec3 {
+/// Step of differences, in radii of what stands there.
+const STEP: f64 = 1e-3;
+
+/// Unit direction in which the distance from the union grows where something of this radius (µm) stands.
+pub(crate) fn outwards(cones: &[RoundCone], p: DVec3, radius: f64) -> DVec3 {
+    let step = STEP * radius;
     let slope = |axis: DVec3| distance(cones, p + axis * step) - distance(cones, p - axis * step);
     let gradient = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
     gradient.try_normalize().unwrap_or(DVec3::Y)
@@ -106,7 +110,7 @@ mod tests {
         let x = 5.0 + 0.5 * (2.0 + 1.0) * 0.1;
         let radius = 1.5 * slant / 10.0;
         assert!(cone().distance(DVec3::new(x, radius, 0.0)).abs() < 1e-12);
-        let n = outwards(&[cone()], DVec3::new(x, radius, 0.0), 1e-4);
+        let n = outwards(&[cone()], DVec3::new(x, radius, 0.0), 0.1);
         assert!((n.x - 0.1).abs() < 1e-6, "{n}");
     }
 

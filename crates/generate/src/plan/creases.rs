@@ -13,21 +13,17 @@
 use glam::DVec3;
 
 use super::path::{Path, Plan};
+use super::shape::TURNED_BACK;
 
-/// Radii that a crease is from its traced point at most: what a turn of 130° asks for.
-const MAX_REACH: f64 = 2.4;
 /// Radii of a crease that is told from a circle: that of a turn by 44°. Below, a ring is a fourteenth too thin inside at
 /// most, and costs no memory of its own.
 const MIN_REACH: f64 = 1.08;
-/// Cosine of the sharpest turn (150°) that gets a crease: beyond, both legs are one tube.
-const MIN_COS: f64 = -0.866;
 /// Share of a leg that the creases at its ends may take. With 0.9 there are 4 % more crossings beside forks, with 0.5
 /// walls are no better than with 0.6.
 const OF_LEG: f64 = 0.7;
-/// Radii of a leg that a ring without a crease keeps to itself: at joints and zones, and elsewhere. With 1 and 0 there are
-/// 1 % more crossings and folds beside forks at level 4, and narrow bends are 0.09 radii too thin inside instead of 0.08.
-const KEPT: f64 = 1.0;
-const KEPT_ON_THE_WAY: f64 = 0.5;
+/// Radii of a leg that a ring without a crease keeps to itself. With 1 there are 5 % more crossings beside forks at level 4,
+/// and narrow bends are two fifths thinner inside.
+const KEPT: f64 = 0.5;
 
 /// Notes the inner corners of the rings at bends.
 pub(crate) fn set_creases(plan: &mut Plan) {
@@ -39,11 +35,10 @@ pub(crate) fn set_creases(plan: &mut Plan) {
             continue;
         }
         // What each ring takes of the legs beside it.
-        let wanted: Vec<f64> = (bends.iter().zip(&path.rings).enumerate())
-            .map(|(number, (bend, ring))| match bend {
+        let wanted: Vec<f64> = (bends.iter().zip(&path.rings))
+            .map(|(bend, ring)| match bend {
                 Some(bend) => bend.wanted,
-                None if ring.is_of_zone() || path.end_at(number).is_joint() => KEPT * ring.radius,
-                None => KEPT_ON_THE_WAY * ring.radius,
+                None => KEPT * ring.radius,
             })
             .collect();
         let leg = |ring: usize| {
@@ -90,8 +85,8 @@ impl Bend {
         let cos = incoming.dot(outgoing);
         // cos² of half the turn.
         let half = 0.5 * (1.0 + cos);
-        let reach = half.sqrt().recip().min(MAX_REACH);
-        if cos < MIN_COS || reach <= MIN_REACH {
+        let reach = half.sqrt().recip();
+        if cos < TURNED_BACK || reach <= MIN_REACH {
             return None;
         }
         Some(Self {

@@ -147,7 +147,7 @@ impl Plan {
         }
         self.joints[joint as usize].arms = left;
         self.joints.push(Joint {
-            center: at.center + towards * (1.2 * at.radius).min(0.4 * shortest),
+            center: at.center + towards * at.radius.min(0.5 * shortest),
             arms,
             ..at
         });

@@ -18,7 +18,7 @@
 //! `tan θ = ra sin φ / (rb + ra cos φ)` and the distance is `ra / sin θ` (own derivation; for equal
 //! radii the known `r / sin(φ/2)` on the bisector).
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
@@ -68,6 +68,8 @@ pub(crate) struct JointShape {
 
 /// Least angle between two consecutive neighbors about the normal; nearer ones are spread.
 const MIN_GAP: f64 = 0.12;
+/// Slope against the plane up to which a neighbor that leans draws poles and crotches along.
+const STEEPEST: f64 = 2.0;
 /// A crotch stays behind this share of the way to either neighbor's ring.
 const BEFORE_RING: f64 = 0.85;
 
@@ -138,20 +140,20 @@ fn crotch(gap: f64, radius: f64, a: &Neighbor, b: &Neighbor) -> (f64, f64) {
         return (0.5 * gap, radius);
     }
     // Towards a straight line the two radii count as the joint's own, or the vertex would run off.
-    let straight = smoothstep((gap - 0.5 * PI) / (0.45 * PI));
+    let straight = smoothstep((gap - FRAC_PI_2) / FRAC_PI_2);
     let tube = |r: f64| r.min(radius) + straight * (radius - r.min(radius));
     let (ra, rb) = (tube(a.radius), tube(b.radius));
-    let turn = f64::atan2(ra * gap.sin(), rb + ra * gap.cos()).clamp(0.1 * gap, 0.9 * gap);
+    let turn = f64::atan2(ra * gap.sin(), rb + ra * gap.cos());
     let free = ra / turn.sin();
     let room = |length: f64, off: f64| {
-        if off.cos() > 0.05 {
+        if off.cos() > 0.0 {
             BEFORE_RING * length / off.cos()
         } else {
             f64::INFINITY
         }
     };
     let cap = room(a.length, turn).min(room(b.length, gap - turn));
-    (turn, free.max(0.9 * radius).min(cap.max(0.4 * radius)))
+    (turn, free.max(radius).min(cap.max(0.5 * radius)))
 }
 
 fn smoothstep(t: f64) -> f64 {
@@ -159,25 +161,25 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Slope against the plane, between those of the two neighbors.
+/// Slope of a direction against the plane, at most [`STEEPEST`].
+fn slope(direction: DVec3, normal: DVec3) -> f64 {
+    let up = direction.dot(normal);
+    let flat = (1.0 - up * up).max(f64::MIN_POSITIVE).sqrt();
+    (up / flat).clamp(-STEEPEST, STEEPEST)
+}
+
+/// Slope between those of the two neighbors.
 fn tilt(a: &Neighbor, b: &Neighbor, normal: DVec3, share: f64) -> f64 {
-    let slope = |n: &Neighbor| {
-        let up = n.direction.dot(normal);
-        (up / (1.0 - up * up).max(0.04).sqrt()).clamp(-2.0, 2.0)
-    };
-    slope(a) * (1.0 - share) + slope(b) * share
+    slope(a.direction, normal) * (1.0 - share) + slope(b.direction, normal) * share
 }
 
 /// Poles, farther out where the neighbors lean towards them.
 fn poles(radius: f64, normal: DVec3, directions: &[DVec3]) -> [DVec3; 2] {
-    let lean = |side: f64| {
-        directions
-            .iter()
-            .map(|d| side * d.dot(normal))
-            .fold(0.0, f64::max)
-            .min(0.9)
-    };
-    [1.0, -1.0].map(|side| normal * (side * radius / (1.0 - lean(side) * lean(side)).sqrt()))
+    [1.0, -1.0].map(|side| {
+        let slopes = directions.iter().map(|&d| slope(d, side * normal));
+        let steepest = slopes.fold(0.0, f64::max);
+        normal * (side * radius * (1.0 + steepest * steepest).sqrt())
+    })
 }
 
 /// Moves angles apart that are nearer than [`MIN_GAP`]; ascending, within one turn.
@@ -218,7 +220,7 @@ pub(crate) fn plane(directions: &[DVec3]) -> (DVec3, f64) {
             .iter()
             .map(|d| d.dot(normal).abs())
             .fold(0.0, f64::max);
-        let score = gap - 0.8 * lean;
+        let score = gap - lean;
         if score > best.1 + 1e-12 {
             best = (normal, score, gap);
         }

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use super::clearance::FREE_WAY;
 use super::joint::{JointShape, Neighbor};
 use super::path::{Path, PathEnd, Plan};
 use crate::tracing::off_segment;
 use crate::warning::Warnings;
 
-/// Free way between a joint and a neighbor's ring, in radii of that ring.
-const FREE_WAY: f64 = 0.35;
-/// Times that all joints are looked at: what is left out changes the directions of what is beside it.
+/// Times that all joints are looked at: what is left out changes the directions of what is beside it. A guard.
 const MAX_ROUNDS: usize = 8;
 
 /// Leaves out rings that lie within the reach of a joint beside them.

@@ -4,22 +4,19 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::arrange::{Group, arrange};
+use super::clearance::{CLEAR, FREE_WAY};
 use super::cone::distance;
 use super::joint::{JointShape, Neighbor};
 use super::planner::{End, Planner, Start, Way};
 use super::polyline::Polyline;
 use super::shape::InsetShape;
-use super::zone::{Beginning, Branch, NoZone, Zone};
+use super::zone::{Beginning, Branch, NoZone, TRUNK_REACH, Zone};
 use super::{ForkChoice, MAX_NEIGHBORS};
 use crate::tracing::{NONE, Skeleton};
 
-/// Free way between the inset's corners and the branch's next ring, in radii.
-pub(super) const AHEAD: f64 = 0.35;
-/// The branch's rings begin outside the trunk by this share of their radius.
-pub(super) const CLEAR: f64 = 1.05;
 /// An inset stands across its branch up to this cosine of the angle between its direction and the branch's.
 const ACROSS: f64 = 0.92;
-/// Points of a branch that are looked at to find its way out.
+/// Points of a branch that are looked at to find its way out. A guard.
 const MAX_LOOKED_AT: usize = 40;
 
 /// Branches of a path that are worth a thread.
@@ -162,8 +159,9 @@ impl Planner<'_> {
         loop {
             let node = self.base.node(here);
             let beyond = (node.center - shape.center).dot(shape.direction);
-            let near = node.center.distance(shape.center) <= 6.0 * zone.trunk_radius + shape.reach;
-            if beyond > shape.reach + AHEAD * zone.radius.max(node.radius) {
+            let near =
+                node.center.distance(shape.center) <= TRUNK_REACH * zone.trunk_radius + shape.reach;
+            if beyond > shape.reach + FREE_WAY * zone.radius.max(node.radius) {
                 if distance(&cones, node.center) > CLEAR * node.radius {
                     return Some((shape, Beginning::At(here)));
                 }
@@ -199,7 +197,7 @@ impl Planner<'_> {
             let center = shape.center + way * (arc / length);
             distance(&cones, center) > CLEAR * zone.radius
         };
-        let (mut low, mut high) = (shape.reach + AHEAD * zone.radius, length);
+        let (mut low, mut high) = (shape.reach + FREE_WAY * zone.radius, length);
         if low >= high || !is_clear(high) {
             return None;
         }
@@ -219,18 +217,20 @@ impl Planner<'_> {
         let last = way.nodes.len() - 1;
         let low = match start {
             Start::Root(_) => 0.0,
-            Start::Joint(fork, _, child) => self.joint_reach(*fork, *child) + AHEAD * path.radii[1],
-            Start::Inset(inset) => inset.shape.reach + AHEAD * inset.radius,
+            Start::Joint(fork, _, child) => {
+                self.joint_reach(*fork, *child) + FREE_WAY * path.radii[1]
+            }
+            Start::Inset(inset) => inset.shape.reach + FREE_WAY * inset.radius,
         };
         let high = match way.end {
             End::Tip => 0.0,
             End::Joint => {
                 let reach = self.joint_reach(way.nodes[last], way.nodes[last - 1]);
-                reach + AHEAD * path.radii[last - 1]
+                reach + FREE_WAY * path.radii[last - 1]
             }
             End::Inset => {
                 let inset = self.end_of(way);
-                inset.map_or(0.0, |inset| inset.shape.reach + AHEAD * inset.radius)
+                inset.map_or(0.0, |inset| inset.shape.reach + FREE_WAY * inset.radius)
             }
         };
         let high = path.length() - high;

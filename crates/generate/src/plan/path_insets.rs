@@ -1,5 +1,6 @@
 //! Insets that paths begin or end in.
 
+use super::clearance::FREE_WAY;
 use super::path::{Inset, Label, Path, PathEnd, PlannedRing, RingKind};
 use super::planner::{End, PathInset, Planner, Start, Way};
 use super::polyline::Polyline;
@@ -108,7 +109,7 @@ impl Planner<'_> {
     /// A branch too short for a ring of its own beyond its inset: one right ahead of it.
     pub(super) fn end_ahead(&mut self, start: &PathInset, last: u32) {
         let first = self.inset_ring(start, last);
-        let ahead = start.shape.reach + 0.6 * start.radius;
+        let ahead = start.shape.reach + FREE_WAY * start.radius;
         self.plan.insets[start.inset as usize].path = self.plan.paths.len() as u32;
         self.plan.paths.push(Path {
             start: PathEnd::Inset(start.inset),

@@ -14,7 +14,7 @@ use super::trunk_rings::{PlaceKind, RingPlace, nearest, rings};
 use super::zone::Beginning;
 use crate::tracing::{Children, NONE, Root, Skeleton};
 
-/// Tries to lay out a path before all forks left on it become joints.
+/// Tries to lay out a path before all forks left on it become joints. A guard.
 const MAX_TRIES: usize = 6;
 
 /// A path yet to be laid out.

@@ -92,7 +92,8 @@ impl Polyline {
         for i in self.segments(range) {
             let (a, b) = (self.centers[i], self.centers[i + 1]);
             let axis = b - a;
-            let t = ((p - a).dot(axis) / axis.length_squared().max(1e-18)).clamp(0.0, 1.0);
+            let t =
+                ((p - a).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             let radius = self.radii[i] * (1.0 - t) + self.radii[i + 1] * t;
             let distance = p.distance(a + axis * t) - radius;
             if distance < best.0 {

@@ -3,8 +3,6 @@
 use super::MAX_NEIGHBORS;
 use super::planner::Planner;
 
-/// Weight of a child's direction beside its relative radius when the trunk's continuation is chosen.
-const STRAIGHTNESS: f64 = 0.5;
 /// A branch may be this much thicker than its trunk.
 const MAX_THICK: f64 = 1.05;
 /// A branch that forks again within this many of its radii is not clear of its trunk by then.
@@ -66,7 +64,7 @@ impl Planner<'_> {
         let (incoming, radius) = (direction(before, fork), self.radius(fork));
         let score = |&child: &u32| {
             let relative = self.base.node(child).radius / radius;
-            relative + STRAIGHTNESS * incoming.dot(direction(fork, child))
+            relative + incoming.dot(direction(fork, child))
         };
         children.reduce(|best, c| if score(&c) > score(&best) { c } else { best })
     }
@@ -84,12 +82,7 @@ impl Planner<'_> {
     }
 
     fn leaves_through_insets(&self, fork: u32, main: u32) -> bool {
-        let [here, main_radius] = [fork, main].map(|n| self.radius(n));
-        let trunk = if main_radius > 0.3 * here {
-            here.min(main_radius)
-        } else {
-            here
-        };
+        let trunk = self.radius(fork).min(self.radius(main));
         if self.children.of(fork).len() >= MAX_NEIGHBORS {
             return false;
         }

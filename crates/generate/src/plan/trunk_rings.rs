@@ -3,12 +3,11 @@
 use glam::DVec3;
 
 use super::arrange::Group;
+use super::clearance::FREE_WAY;
 use super::path::RingKind;
 use super::polyline::Polyline;
 use super::zone::Zone;
 
-/// Free way beside a zone's rings, in radii of the trunk.
-const BESIDE_ZONE: f64 = 0.35;
 /// A zone is extended to a bend of more than 15° (its cosine) that is at most this many radii of the trunk before or
 /// after it.
 const NEAR_BEND: f64 = 0.75;
@@ -65,13 +64,13 @@ pub(super) fn rings(
     for index in 1..=last {
         let arc = path.arcs[index];
         while let Some(zone) = zones.next_if(|zone| zone.arc <= arc || index == last) {
-            give_way(&mut rings, path, zone.arc, BESIDE_ZONE);
+            give_way(&mut rings, path, zone.arc, FREE_WAY);
             rings.push(zone);
         }
         let end = index == last;
         if !end {
             let in_room = arc >= room[0] && arc <= room[1];
-            let beside = BESIDE_ZONE * path.radius(arc);
+            let beside = FREE_WAY * path.radius(arc);
             let next = spans.partition_point(|[_, high]| high + beside <= arc);
             let within = spans.get(next).is_some_and(|[low, _]| arc > low - beside);
             // Points of a path without zones stay as they are: later steps see to them.
@@ -135,7 +134,7 @@ fn zone_rings(path: &Polyline, spans: &[[f64; 2]]) -> Vec<RingPlace> {
     };
     let mut rings: Vec<RingPlace> = Vec::with_capacity(2 * spans.len());
     for (g, &[low, high]) in spans.iter().enumerate() {
-        let near = 0.3 * path.radius(low);
+        let near = FREE_WAY * path.radius(low);
         match rings.last_mut() {
             Some(before) if low - before.arc < near => {
                 before.arc = 0.5 * (before.arc + low);

@@ -3,20 +3,26 @@
 
 use glam::DVec3;
 
+use super::clearance::FREE_WAY;
 use super::cone::{RoundCone, distance, outwards};
 use super::polyline::Polyline;
 use super::shape::{InsetShape, InsetSite, MIN_STEEP, not_too_steep};
 
 /// Stretch of the trunk that is looked at to either side, in its radii.
-const TRUNK_REACH: f64 = 8.0;
+pub(super) const TRUNK_REACH: f64 = 8.0;
 /// Stretch of the branch, in the same radii; and where all of that lies within the trunk, as of siblings side by
 /// side. With 40 `vd130423` has a third more folds at forks, with 200 no fewer.
 const BRANCH_REACH: f64 = 12.0;
 const FARTHEST: f64 = 80.0;
-/// Steps of the walk out of the trunk at most: thin branches of thick trunks take finer ones.
+/// Stretch of the branch before its exit and after it that tells its direction, in its radii. With 1 and 1, 5 % more facets
+/// cross near forks at level 4, and with 1 and 2, 9 %.
+const DIRECTION_WAY: [f64; 2] = [0.75, 1.5];
+/// Steps of the walk out of the trunk at most: thin branches of thick trunks take finer ones. A guard.
 const MAX_STEPS: f64 = 2000.0;
-/// A branch that is thicker than this share of its trunk, where it leaves it, gets a joint.
-const MAX_RATIO: f64 = 1.2;
+/// What leaves a trunk through an inset is at most so thick, as a share of the trunk: else there is a joint. A fork whose
+/// children are its trunk counts as the trunk up to as much thicker than they are. Up to 1.05, as branches of parents, six
+/// forks of twelve cells have 3.7 % more of their area off the blended surface in the mean, and none less.
+pub(super) const MAX_RATIO: f64 = 1.2;
 
 /// A branch on a trunk.
 #[derive(Clone, Debug)]
@@ -87,9 +93,9 @@ impl Branch<'_> {
     pub(crate) fn zone(&self, trunk: &Polyline, at: f64, room: [f64; 2]) -> Result<Zone, NoZone> {
         let (exit_arc, cones, around) = self.way_out(trunk, at)?;
         let exit = self.path.at(exit_arc);
-        let way = self.path.at(exit_arc + 1.5 * self.radius)
-            - self.path.at((exit_arc - 0.75 * self.radius).max(0.0));
-        let normal = outwards(&cones, exit, 1e-3 * self.radius);
+        let [before, after] = DIRECTION_WAY.map(|way| way * self.radius);
+        let way = self.path.at(exit_arc + after) - self.path.at((exit_arc - before).max(0.0));
+        let normal = outwards(&cones, exit, self.radius);
         let direction = not_too_steep(way.try_normalize().unwrap_or(normal), normal);
         let around = [around[0].max(0.0), around[1].min(trunk.length())];
         let foot = trunk.foot(exit, around);
@@ -100,24 +106,18 @@ impl Branch<'_> {
         let tangent = trunk.tangent(foot, 0.5 * trunk_radius);
         let slant = 1.0 / direction.dot(normal).max(MIN_STEEP);
         let leaning = direction.dot(tangent);
-        let stretch = slant.powf(if leaning.abs() > 0.3 { 1.0 } else { 0.3 });
-        let half = (self.radius * (stretch + 0.5)).max(0.5 * trunk_radius);
+        let half = (self.radius * (slant + 0.5)).max(0.5 * trunk_radius);
         let center = foot + 0.5 * self.lift * self.radius * leaning * slant;
-        let room = [room[0] + 0.3 * trunk_radius, room[1] - 0.3 * trunk_radius];
-        let free = room[1] - room[0];
-        if free < 1.5 * half {
+        let beside = FREE_WAY * trunk_radius;
+        let room = [room[0] + beside, room[1] - beside];
+        if room[1] - room[0] < 2.0 * half {
             return Err(NoZone::NoRoom);
         }
-        let middle = if 2.0 * half > free {
-            0.5 * (room[0] + room[1])
-        } else {
-            center.clamp(room[0] + half, room[1] - half)
-        };
+        let middle = center.clamp(room[0] + half, room[1] - half);
         let shift = middle - center;
-        if shift.abs() > 2.5 * trunk_radius + self.radius {
+        if shift.abs() > 2.0 * trunk_radius + self.radius {
             return Err(NoZone::NoRoom);
         }
-        let half = half.min(0.5 * free);
         let mut zone = Zone {
             foot,
             exit,

@@ -72,7 +72,7 @@ impl Flow {
             to.extend(quad.map(|goal| stretch.undo(goal)));
             rings.push(ring);
         }
-        let width = 2.5 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
+        let width = 2.0 * (4.0 * std::f64::consts::PI / sphere.quads.len() as f64).sqrt();
         let warp = Warp::new(&from, &to, width, FLOW_STEPS);
         Self {
             rotation: insertion_quads.rotation,

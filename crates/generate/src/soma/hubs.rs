@@ -24,7 +24,7 @@ const FEWEST: usize = 3;
 const THINNER: f64 = 0.7;
 /// Greatest cross-section of all branches as they leave it, as a share of the hub's own.
 const ALL_THINNER: f64 = 1.0;
-/// Forks of a tree that are tried, the thickest first.
+/// Forks of a tree that are tried, the thickest first. A guard.
 const MAX_TRIED: usize = 8;
 
 /// A body that stands for a hub: the label that its surface has.

@@ -144,7 +144,7 @@ fn push_apart(insertions: &mut [Insertion], gap: f64) -> bool {
                 .try_normalize()
                 .unwrap_or_else(|| a.foot.any_orthonormal_vector());
             // The thinner one gives way more.
-            let share = (b.radius / (a.radius + b.radius)).clamp(0.1, 0.9);
+            let share = b.radius / (a.radius + b.radius);
             insertions[i].turn(axis, -0.5 * lack * share);
             insertions[j].turn(axis, 0.5 * lack * (1.0 - share));
         }
@@ -158,8 +158,8 @@ fn shrink_to_total(insertions: &mut [Insertion]) {
         for j in i + 1..insertions.len() {
             let (a, b) = (insertions[i], insertions[j]);
             let (have, need) = (between(&a, &b), a.angle() + b.angle());
-            if have < 1.1 * need && need > 0.0 {
-                let factor = (have / (1.1 * need)).max(0.02);
+            if have < GAP * need && need > 0.0 {
+                let factor = (have / (GAP * need)).max(0.02);
                 insertions[i].radius *= factor;
                 insertions[j].radius *= factor;
             }
@@ -178,6 +178,8 @@ pub(crate) struct InsertionQuads {
     pub(crate) worst: f64,
 }
 
+/// Steps of the sequence of rotations: powers of the root of x⁴ = x + 1, inverted.
+const WEYL: [f64; 3] = [0.819_172_513, 0.671_043_607, 0.549_700_478];
 /// Number of rotations tried.
 const ROTATIONS: usize = 48;
 
@@ -293,12 +295,7 @@ fn rotation(trial: usize) -> DMat3 {
     if trial == 0 {
         return DMat3::IDENTITY;
     }
-    let weyl = |step: f64| (trial as f64 * step).fract();
-    let (a, b, c) = (
-        weyl(0.819_172_513),
-        weyl(0.671_043_607),
-        weyl(0.549_700_478),
-    );
+    let [a, b, c] = WEYL.map(|step| (trial as f64 * step).fract());
     let (s, t) = ((1.0 - a).sqrt(), a.sqrt());
     let (b, c) = (2.0 * PI * b, 2.0 * PI * c);
     DMat3::from_quat(DQuat::from_xyzw(

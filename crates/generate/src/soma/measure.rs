@@ -89,8 +89,7 @@ impl Coarse<'_> {
             let added = displacement.dot(vector) / 3.0;
             extent.volume += volume + added;
             // Of a sphere, a patch's area grows by half the share that its volume does.
-            extent.area +=
-                flat * (1.0 + 0.5 * added / volume.max(f64::MIN_POSITIVE)).clamp(1.0, 1.2);
+            extent.area += flat * (1.0 + 0.5 * added / volume.max(f64::MIN_POSITIVE)).max(1.0);
         }
         for insertion in self.insertions {
             let square = insertion.radius * insertion.radius;

@@ -26,7 +26,7 @@ pub(crate) struct SomaRequest<'a> {
 /// soma of `Neuron.h5` is off by more than a thousandth with its rings where they were traced, by a quarter.
 const MOST_OFF: f64 = 0.02;
 
-/// Tries before a surface with folds is handed back.
+/// Tries before a surface with folds is handed back. A guard.
 pub(crate) const ATTEMPTS: u32 = 3;
 
 /// A soma's surface in µm.

@@ -209,7 +209,7 @@ fn insertion(skeleton: &Skeleton, ring: &PlacedRing, soma_sphere: &SomaSphere) -
     let direction = offset.try_normalize().unwrap_or(DVec3::Y);
     let height = distance - soma_sphere.surface(direction);
     let most = match ring.inset {
-        true => (height / node.radius - 0.2).clamp(0.0, MOST_LEANING) * soma_sphere.hillocks(),
+        true => (height / node.radius).clamp(0.0, MOST_LEANING) * soma_sphere.hillocks(),
         false => 0.0,
     };
     let axis = leaning(direction, path_direction(skeleton, ring.node), most);

@@ -9,11 +9,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::site::MIN_WAY;
 use crate::tracing::SomaSphere;
 use crate::tracing::{NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
-/// Stems that a soma may have before any are gathered.
+/// Stems that a soma may have before any are gathered. A guard.
 const MAX_STEMS: usize = 40;
 /// Least angle between two trunks (radians): at most 58 disks of this angle fit on a sphere.
 const APART: f64 = 0.5;
@@ -100,7 +101,7 @@ fn trunk(nodes: &[SkeletonNode], soma_sphere: &SomaSphere, bundle: &[u32]) -> Sk
     let distances = stems.map(|stem| stem.center.distance(soma_sphere.center));
     let nearest = distances.fold(f64::INFINITY, f64::min);
     let surface = soma_sphere.surface(direction);
-    let clear = (1.5 * thickest.radius).min(0.5 * surface);
+    let clear = (MIN_WAY * thickest.radius).min(0.5 * surface);
     let distance = surface + (0.5 * (nearest - surface)).max(clear);
     SkeletonNode {
         center: soma_sphere.center + direction * distance,

@@ -13,10 +13,8 @@ use crate::{GenerateOptions, SomaMethod};
 
 /// Thickness of slices, in radii of the soma.
 const SLICE: f64 = 0.08;
-/// Slices of a link, at most.
+/// Slices of a link, at most. A guard.
 const MAX_SLICES: f64 = 24.0;
-/// A neurite that is thicker than this, in radii of the soma, is no part of it: it is hardly drawn out towards such.
-const THICKEST: f64 = 0.8;
 /// Parts of a slice of a thick neurite: rings of equal area, and parts of each.
 const RINGS: usize = 3;
 const AROUND: usize = 8;
@@ -91,11 +89,11 @@ fn add(sphere: &SomaSphere, link: [(DVec3, f64); 2], highest: f64, stubs: &mut V
         let (center, radius) = (from + way * share, first + share * (last - first));
         let volume = std::f64::consts::PI * radius * radius * way.length() / count;
         let over = height(center);
-        let is_thick = radius > THICKEST * sphere.radius;
-        if is_thick || over < -2.0 * radius || over > highest + radius {
+        // A soma is hardly drawn out towards a neurite that is thicker than it.
+        if radius > sphere.radius || over < -2.0 * radius || over > highest + radius {
             continue;
         }
-        if over > 1.5 * radius || radius < THIN * sphere.radius {
+        if over > radius || radius < THIN * sphere.radius {
             if over > 0.0 {
                 stubs.push((center, volume));
             }

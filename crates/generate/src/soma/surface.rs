@@ -110,6 +110,9 @@ fn lone(request: &SomaRequest<'_>) -> SomaSurface {
 /// 0.01 % of its volume, and files with tens of thousands of lone soma samples exist.
 const LONE_LEVEL: u32 = 4;
 
+/// Most quads along an edge of the cube, if neurites are thin and have room: more take longer.
+const USUAL_LEVEL: f64 = 10.0;
+
 /// Least quads along an edge of the cube for what is no sphere.
 const SHAPED_LEVEL: u32 = 8;
 
@@ -160,14 +163,15 @@ fn fitting_level(request: &SomaRequest<'_>, insertions: &[Insertion]) -> u32 {
     }
     let mut angles: Vec<f64> = insertions.iter().map(Insertion::angle).collect();
     angles.sort_by(f64::total_cmp);
-    let median = angles.get(angles.len() / 2).copied().unwrap_or(0.15);
+    let median = angles[angles.len() / 2];
     let fit = (std::f64::consts::FRAC_PI_4 * std::f64::consts::SQRT_2 / median).round();
     let room = (4.0 * insertions.len() as f64).sqrt().ceil();
     let least = match request.soma.is_sphere() {
         true => 6,
         false => SHAPED_LEVEL,
     };
-    let level = (fit.clamp(6.0, 10.0).max(room).min(14.0) as u32).max(least);
+    let finest = finest_fitting(request.kind);
+    let level = (fit.min(USUAL_LEVEL).max(room) as u32).clamp(least, finest);
     // A sphere that is its own mirror image is factored in a fraction of the time.
     level.next_multiple_of(2)
 }

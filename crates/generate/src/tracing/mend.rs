@@ -10,9 +10,10 @@ use crate::warning::Warnings;
 
 /// Radius (µm) of last resort, as of a thin dendrite: where no point of a cell has one.
 const FALLBACK_RADIUS: f64 = 0.5;
-/// Points nearer to their parent than this share of the larger radius are one point.
+/// Points nearer to their parent than this share of the larger radius are one point. A guard.
 const COINCIDENT: f64 = 1e-3;
-/// What is so near over the soma's surface lies within it, as a share of the distance from the center.
+/// What is so near over the soma's surface lies within it, as a share of the distance from the center: many tracings begin on
+/// the sphere. A guard.
 const INSIDE: f64 = 0.02;
 
 /// Changes all radii (µm).

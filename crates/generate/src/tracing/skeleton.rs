@@ -384,6 +384,7 @@ impl Skeleton {
 /// Distance of a point from a segment.
 pub(crate) fn off_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     let axis = to - from;
-    let t = ((point - from).dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0);
+    let t =
+        ((point - from).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     point.distance(from + axis * t)
 }

@@ -6,9 +6,7 @@ use glam::DVec3;
 use crate::tracing::{Children, NONE, Root, Skeleton, SkeletonNode};
 use crate::warning::Warnings;
 
-/// Two forks nearer than this share of the larger radius become one.
-const FORKS_APART: f64 = 0.6;
-/// Consecutive rings are at least this share of the larger radius apart.
+/// Consecutive rings are at least this share of the larger radius apart; forks that are nearer become one.
 const SPACING: f64 = 0.5;
 /// The first ring after a fork is at least this share of the fork's radius away.
 const FORK_SPACING: f64 = 1.0;
@@ -16,15 +14,8 @@ const FORK_SPACING: f64 = 1.0;
 /// Points of which one is so many times as thick as others to both sides within the least way are a swelling, and no noise of
 /// the radii: all stay where their rings have room. Radii that vary by 30 % to both sides reach 1.86.
 const SWELLING: f64 = 1.9;
-/// Sum of half the turns (radians) at two such points up to which they stay: at sharper ones ridges fold over.
-const MOST_TURNED: f64 = 0.3;
-/// Points that are looked at for that, to either side.
+/// Points that are looked at for that, to either side. A guard.
 const MAX_BESIDE: usize = 12;
-/// A swelling of one point is drawn round, which holds more than its two cones. It is lowered for half of that, as far as
-/// this share of its radius: polygons of the usual level hold less than circles by the other half.
-const LOWEST_PEAK: f64 = 0.975;
-/// Room that rings of a swelling have beside what their angle takes, as a share of the larger radius.
-const BESIDE: f64 = 0.02;
 
 /// Leaves out twigs that end inside the tubes that they branch from.
 pub(crate) fn drop_buried_twigs(skeleton: &mut Skeleton, warnings: &mut Warnings) {
@@ -80,7 +71,7 @@ fn mark_run(children: &Children, mut node: u32, keep: &mut [bool]) {
 }
 
 /// A twig is looked for inside this many of its siblings, the thickest ones: what is buried lies inside a
-/// thick neurite, and a fork of thousands costs no square of them.
+/// thick neurite, and a fork of thousands costs no square of them. A guard.
 const MAX_SIBLINGS: usize = 16;
 
 fn thickest(skeleton: &Skeleton, branches: &[u32]) -> Vec<u32> {
@@ -98,19 +89,15 @@ fn thickest(skeleton: &Skeleton, branches: &[u32]) -> Vec<u32> {
 
 fn buried(skeleton: &Skeleton, fork: u32, branch: u32, tip: u32, siblings: &[u32]) -> bool {
     let (at, end) = (skeleton.node(fork), skeleton.node(tip));
-    let reach = end.center.distance(at.center);
-    if reach <= at.radius {
+    if end.center.distance(at.center) <= at.radius {
         return true;
-    }
-    if reach > 6.0 * at.radius {
-        return false;
     }
     let inside = |other: u32| {
         let other = skeleton.node(other);
         let axis = other.center - at.center;
         let t = ((end.center - at.center).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
         let radius = at.radius + t * (other.radius - at.radius);
-        t.is_finite() && end.center.distance(at.center + axis * t) < 0.9 * radius
+        t.is_finite() && end.center.distance(at.center + axis * t) < radius
     };
     let siblings = siblings.iter().copied().filter(|&c| c != branch);
     let parent = Some(at.parent).filter(|&p| p != NONE);
@@ -135,7 +122,7 @@ pub(crate) fn merge_close_forks(skeleton: &mut Skeleton, warnings: &mut Warnings
             continue;
         }
         let fork = *skeleton.node(above);
-        let apart = FORKS_APART * fork.radius.max(node.radius);
+        let apart = SPACING * fork.radius.max(node.radius);
         if node.center.distance(fork.center) >= apart {
             continue;
         }
@@ -192,7 +179,7 @@ pub(crate) fn space_points(skeleton: &mut Skeleton, warnings: &mut Warnings) {
         let have_room = |a: u32| {
             let angle = half_turn(skeleton, children, a) + half_turn(skeleton, children, i);
             let thick = skeleton.node(a).radius.max(node.radius);
-            angle < MOST_TURNED && apart(a) > thick * (BESIDE + angle.sin())
+            apart(a) > thick * angle.sin()
         };
         let near = |a: u32| apart(a) < least(a, i) && !(swells(a) && have_room(a));
         if hub {
@@ -258,7 +245,8 @@ fn is_at_swelling(skeleton: &Skeleton, children: &Children, from: u32, reach: f6
     })
 }
 
-/// Lowers points that are far thicker than both neighbors. From a thin point with radius a to a peak d above it and back,
+/// Lowers points that are far thicker than both neighbors: drawn round, they hold more than their two cones. Polygons of the
+/// usual level hold less than circles by half of that. From a thin point with radius a to a peak d above it and back,
 /// the radius is a cubic without a slope at its ends, whose square has the mean a² + a d + 13/35 d²; a cone's is
 /// a² + a d + d²/3.
 fn lower_peaks(skeleton: &mut Skeleton) {
@@ -281,8 +269,7 @@ fn lower_peaks(skeleton: &mut Skeleton) {
             let above = node.radius - thin;
             let cone = thin * above + above * above / 3.0;
             let round = ((thin * thin + 4.0 * ROUND * cone).sqrt() - thin) / (2.0 * ROUND);
-            let halfway = f64::midpoint(thin + round, node.radius);
-            lowered.push((index, halfway.max(LOWEST_PEAK * node.radius)));
+            lowered.push((index, f64::midpoint(thin + round, node.radius)));
         }
     }
     for (index, radius) in lowered {

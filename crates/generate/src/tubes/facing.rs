@@ -13,12 +13,8 @@ use crate::plan::{Inset, RoundCone, not_too_steep, outwards};
 const CLEARANCE: f64 = 0.14;
 /// Widest half of a quad, around the trunk (72°).
 const WIDEST: f64 = 1.257;
-/// A quad turns at most this far from where its ring stands (40°).
-const MAX_TURN: f64 = 0.7;
-/// A corner moves at most this far where several branches pull.
-const MAX_PULL: f64 = 0.6;
-/// Free angle between a branch and the side of its quad (3°).
-const INSIDE: f64 = 0.052;
+/// A quad turns, and a corner moves, at most this far: half-way to the next.
+const MAX_TURN: f64 = FRAC_PI_4;
 
 /// A branch at the quad that it leaves through.
 #[derive(Clone, Debug)]
@@ -48,7 +44,7 @@ fn wrap(angle: f64) -> f64 {
 fn beside(path: &PathRings<'_>, ring: usize, exit: DVec3) -> (DVec3, DVec3) {
     let (a, b) = (path.centers[ring], path.centers[ring + 1]);
     let along = path.chord(ring);
-    let share = ((exit - a).dot(along) / a.distance(b).max(1e-9)).clamp(0.15, 0.85);
+    let share = ((exit - a).dot(along) / a.distance(b).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     let base = a.lerp(b, share);
     let way = exit - base;
     (base, way - along * way.dot(along))
@@ -116,7 +112,7 @@ pub(super) fn assign(path: &PathRings<'_>, ring: usize, insets: &[(u32, Inset)])
         };
         taken[side] = true;
         let trunk = 0.5 * (path.radii[ring] + path.radii[ring + 1]);
-        let half = (inset.radius / trunk).min(0.985).asin() + CLEARANCE;
+        let half = (inset.radius / trunk).min(1.0).asin() + CLEARANCE;
         facing.push(Facing {
             inset: number,
             ring,
@@ -164,7 +160,7 @@ pub(super) fn corner_angles(ring: usize, facing: &[&Facing]) -> [f64; 4] {
             [0, 1, 2, 3].map(|k| {
                 let (sum, count) = pulls[k];
                 let pull = if count > 0.0 { sum / count } else { 0.0 };
-                QUARTERS[k] + f64::clamp(pull, -MAX_PULL, MAX_PULL)
+                QUARTERS[k] + f64::clamp(pull, -MAX_TURN, MAX_TURN)
             })
         }
     }
@@ -181,7 +177,7 @@ pub(super) fn settle(
     let along = path.chord(facing.ring);
     let (base, way) = beside(path, facing.ring, facing.exit);
     let thick = 0.5 * (path.radii[facing.ring] + path.radii[facing.ring + 1]);
-    let own = (facing.radius / thick).min(0.985).asin();
+    let own = (facing.radius / thick).min(1.0).asin();
     let (mut off, mut width) = (0.0, 0.0);
     for (ring, corners) in corners.iter().enumerate() {
         let [from, to] = [corners[facing.side], corners[(facing.side + 1) % 4]];
@@ -190,12 +186,12 @@ pub(super) fn settle(
         off += 0.5 * wrap(angle - 0.5 * (from + to));
         width += 0.25 * (to - from);
     }
-    let free = (width - own - INSIDE).max(0.0);
+    let free = (width - own).max(0.0);
     if off.abs() > free {
         let turn = DQuat::from_axis_angle(along, free.copysign(off) - off);
         facing.exit = base + turn * (facing.exit - base);
         facing.direction = turn * facing.direction;
     }
-    let normal = outwards(trunk, facing.exit, 1e-3 * facing.radius);
+    let normal = outwards(trunk, facing.exit, facing.radius);
     facing.direction = not_too_steep(facing.direction, normal);
 }

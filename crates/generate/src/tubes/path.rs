@@ -385,7 +385,7 @@ fn turn_rings(rings: &mut PathRings<'_>, zones: &[Zone], ends: &Ends) {
     let stiffness = |i: usize| {
         let length = rings.centers[i].distance(rings.centers[i + 1]);
         let radius = rings.radii[i].max(rings.radii[i + 1]);
-        (radius / length.max(1e-9)).clamp(1e-4, 10.0)
+        (radius / length.max(f64::MIN_POSITIVE)).clamp(1e-4, 10.0)
     };
     let stiffness: Vec<f64> = (0..last).map(stiffness).collect();
     let angles = relax(&stiffness, &targets);

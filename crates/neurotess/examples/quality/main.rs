@@ -1,7 +1,7 @@
 //! What meshes are worth, a JSON object for each file: what `cargo xtask quality` makes a table of.
 //!
 //! ```text
-//! cargo run --release -p neurotess --example quality -- FILES…
+//! cargo run --release -p neurotess --example quality -- [--once|--digest|--separated|--simulated] FILES…
 //! ```
 //!
 //! At levels 2 and 4: crossing pairs of facets within four radii of a fork, all of them, and facets folded by more than
@@ -10,6 +10,8 @@
 //! subtrees; how many sections show and have no triangle; and how deep (radii, the median)
 //! the inner walls of bends away from forks are within the traced cones, of 40 to 100° and of 100 to 140°. At level 8
 //! somata: see [`soma`].
+//!
+//! `--once` meshes each cell once instead of taking the fastest of three; for the other flags see [`others`].
 
 use std::path::Path;
 use std::time::Instant;
@@ -26,6 +28,7 @@ use tree::Tree;
 mod bends;
 mod facets;
 mod off;
+mod others;
 mod sections;
 mod soma;
 mod tree;
@@ -37,8 +40,10 @@ const RUNS: usize = 3;
 
 #[expect(clippy::print_stdout, reason = "this is its output")]
 fn main() {
-    for file in std::env::args().skip(1) {
-        match figures(Path::new(&file)) {
+    let mut arguments = std::env::args().skip(1).peekable();
+    let flag = arguments.next_if(|argument| argument.starts_with('-'));
+    for file in arguments {
+        match figures(Path::new(&file), flag.as_deref()) {
             Ok(line) => println!("{line}"),
             Err(error) => println!(r#"{{"file": {file:?}, "error": {:?}}}"#, error.to_string()),
         }
@@ -46,11 +51,26 @@ fn main() {
 }
 
 /// The figures of a file.
-fn figures(file: &Path) -> Result<String, Box<dyn std::error::Error>> {
+fn figures(file: &Path, flag: Option<&str>) -> Result<String, Box<dyn std::error::Error>> {
     let morphology = read(file, &ReadOptions::default())?.morphology;
+    let runs = match flag {
+        None => RUNS,
+        Some("--once") => 1,
+        Some(flag) => {
+            let others = match flag {
+                "--digest" => others::digest(&morphology)?,
+                "--separated" => others::separated(&morphology)?,
+                _ => others::simulated(&morphology)?,
+            };
+            return Ok(format!(
+                r#"{{"file": {:?}{others}}}"#,
+                file.display().to_string()
+            ));
+        }
+    };
     let (mut generated, mut fastest) = (Generated::default(), f64::INFINITY);
     let mut soma_seconds = f64::INFINITY;
-    for _ in 0..RUNS {
+    for _ in 0..runs {
         let clock = Instant::now();
         let seconds = || clock.elapsed().as_secs_f64();
         generated = generate_watched(

@@ -11,10 +11,10 @@ use super::patch::{Loop, Patch};
 use crate::arrange::winding::{Query, windings};
 use crate::surface::work::Work;
 
-/// Most vertices of a seam through which loops are looked for.
+/// Most vertices of a seam through which loops are looked for. A guard.
 const STARTS: usize = 48;
 
-/// Most loops of a seam that are told.
+/// Most loops of a seam that are told. A guard.
 const LOOPS: usize = 12;
 
 /// Vertices that cuts made, by what hangs together.

@@ -11,7 +11,7 @@ use crate::surface::work::Work;
 /// Steps of smoothing.
 const STEPS: usize = 3;
 
-/// How often vertices near what has gone wrong are put back before all are.
+/// How often vertices near what has gone wrong are put back before all are. A guard.
 const TRIES: usize = 5;
 
 /// Moves vertices that cuts made by `share` of the way to the middle of their neighbors, a few times. Where

@@ -33,13 +33,13 @@ impl Improved {
     }
 }
 
-/// Passes over narrow faces; the last ones find little.
+/// Passes over narrow faces; the last ones find little. A guard.
 const PASSES: usize = 8;
 
 /// Edges from a narrow face to what may be edited; passes reach a little farther than one would.
 const RINGS: usize = 3;
 
-/// How often all is done again, without what crossed.
+/// How often all is done again, without what crossed. A guard.
 const TRIES: usize = 6;
 
 /// What crosses afterwards is pressed in by up to this share of its radius, before all is done again.

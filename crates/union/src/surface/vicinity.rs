@@ -19,7 +19,7 @@ pub(crate) struct Vicinity {
     whole: Vec<bool>,
 }
 
-/// A face that reaches into more cells than this counts as one of the vicinity; there are few.
+/// A face that reaches into more cells than this counts as one of the vicinity; there are few. A guard.
 const MANY_CELLS: i32 = 64;
 
 /// Cells along the largest face that is near.

@@ -17,7 +17,7 @@ const DEPTH: usize = 128;
 const SWEPT: usize = 4;
 /// Multiplications from which on columns are worth several threads: half a millisecond.
 const SIDE_BY_SIDE: usize = 1 << 21;
-/// A pivot below this share of its diagonal element is rounding: the matrix is singular.
+/// A pivot below this share of its diagonal element is rounding: the matrix is singular. A guard.
 const MIN_PIVOT: f64 = 1e-14;
 
 /// Zeros to be added to. They are written here: pages that the system has yet to clear, and that are read first,

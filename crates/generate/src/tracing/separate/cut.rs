@@ -7,7 +7,7 @@ use super::spread::Spread;
 const NEAR: f64 = 1.5;
 /// Longest piece, in radii. Not shorter: pieces of 1.2 radii make bends that cross in the mesh.
 const PIECE: f64 = 2.0;
-/// Pieces of one segment, at most, in one go.
+/// Pieces of one segment, at most, in one go. A guard.
 const MAX_PIECES: f64 = 200.0;
 
 /// Cuts segments near contacts; returns whether any was cut. `room`: points that may still be added.
@@ -20,8 +20,7 @@ pub(super) fn cut_near_contacts(rods: &mut Rods, spread: &Spread, room: &mut usi
             continue;
         }
         let piece = PIECE * rods.radius(i).max(rods.radius(above));
-        // A hundredth of a piece more is no reason to cut.
-        let wanted = (rods.length[i as usize] / piece - 0.01).ceil();
+        let wanted = (rods.length[i as usize] / piece).ceil();
         let wanted = wanted.clamp(1.0, MAX_PIECES) as u32;
         let part = wanted.min(u32::try_from(*room).unwrap_or(u32::MAX).saturating_add(1));
         *room -= part as usize - 1;

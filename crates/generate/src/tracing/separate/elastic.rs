@@ -13,9 +13,6 @@ use crate::tracing::NONE;
 
 /// Points within this many spread lengths of a contact move.
 const MOVING: f64 = 4.0;
-/// Near its soma a neurite is up to this many times as heavy, falling to once at two radii from the center:
-/// the soma was pulled out towards it.
-const SOMA_WEIGHT: f64 = 5.0;
 /// Change of a segment's length, at most: as a share.
 const STRETCH: f64 = 0.015;
 
@@ -126,20 +123,10 @@ fn mobility(rods: &Rods, spread: &Spread) -> Vec<f64> {
         let (radius, length) = (rods.radius(i), half[i as usize]);
         // A point with no length about it weighs as if it had a little.
         let mass = radius * radius * length.max(1e-6 * radius);
-        let weight = 1.0 / (mass * soma_weight(rods, i));
+        let weight = 1.0 / mass;
         if weight.is_finite() { weight } else { 0.0 }
     };
     (0..rods.count() as u32).map(mobility).collect()
-}
-
-fn soma_weight(rods: &Rods, point: u32) -> f64 {
-    let origin = rods.paths.origin(point);
-    let Some(sphere) = origin.and_then(|o| rods.somata[o.soma as usize].as_ref()) else {
-        return 1.0;
-    };
-    let rest = rods.points[point as usize].rest;
-    let distance = rest.distance(sphere.center) / sphere.towards(rest);
-    1.0 + (SOMA_WEIGHT - 1.0) * (2.0 - distance).clamp(0.0, 1.0)
 }
 
 fn bends(rods: &Rods, spread: &Spread, mobility: &[f64]) -> Vec<Bend> {
@@ -165,7 +152,7 @@ fn bends(rods: &Rods, spread: &Spread, mobility: &[f64]) -> Vec<Bend> {
             above: above as usize,
             here: here as usize,
             below: below as usize,
-            share: after / (before + after).max(1e-12),
+            share: after / (before + after).max(f64::MIN_POSITIVE),
             compliance: (before * after).powi(2) / stiffness.max(1e-30),
             multiplier: DVec3::ZERO,
         })

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A vector is no direction below this length (µm).
+/// A vector is no direction below this length (µm). A guard.
 const NOTHING: f64 = 1e-12;
 
 /// The direction of a vector, or zero where it has none.

@@ -57,11 +57,11 @@ use rods::Rods;
 use search::{Margin, search};
 use spread::{GAP, Spread};
 
-/// Times that branches are moved apart: points that are left out again can make contacts.
+/// Times that branches are moved apart: points that are left out again can make contacts. A guard.
 const MAX_ROUNDS: usize = 4;
-/// Times that segments are cut: pieces can be nearer to one another than the whole.
+/// Times that segments are cut: pieces can be nearer to one another than the whole. A guard.
 const MAX_CUTS: usize = 3;
-/// Points that may be added, for each traced one, and in any cell.
+/// Points that may be added, for each traced one, and in any cell. A guard.
 const MAX_ADDED: (usize, usize) = (2, 4096);
 /// A point whose free room is more than this many radii of the thicker one has as much as it likes.
 const ROOM: f64 = 2.0;

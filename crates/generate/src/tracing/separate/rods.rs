@@ -7,10 +7,6 @@ use crate::separate::paths::{Origin, Paths};
 use crate::tracing::SomaSphere;
 use crate::tracing::{NONE, Root, Skeleton, SkeletonNode};
 
-/// By how much the soma's surface widens from a ring towards the sphere: as a share of the way. Chosen by
-/// eye.
-const FLARE: f64 = 1.0;
-
 /// What a point of a rod stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
@@ -237,7 +233,7 @@ fn sphere_of<'a>(node: &SkeletonNode, somata: &'a [Option<SomaSphere>]) -> Optio
     }
 }
 
-/// The foot of a ring that is beyond its soma's surface.
+/// The foot of a ring that is beyond its soma's surface, which widens towards the sphere as far as the ring is away.
 fn foot(ring: &Point, somata: &[Option<SomaSphere>]) -> Option<Point> {
     let sphere = sphere_of(&ring.node, somata)?;
     let way = ring.rest - sphere.center;
@@ -246,7 +242,7 @@ fn foot(ring: &Point, somata: &[Option<SomaSphere>]) -> Option<Point> {
     let center = sphere.center + way * (surface / way.length());
     let node = SkeletonNode {
         center,
-        radius: ring.node.radius + FLARE * beyond,
+        radius: ring.node.radius + beyond,
         ..ring.node
     };
     (beyond > 0.01 * surface).then_some(Point {

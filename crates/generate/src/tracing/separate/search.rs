@@ -16,16 +16,12 @@ use crate::tracing::SomaSphere;
 /// Two segments may touch if the way between them is at most this many times the sum of their radii: a
 /// branch leaves its parent's surface only after such a way.
 const MAX_WAY: f64 = 2.0;
-/// A thick fork hides the branches beside it: it counts with this many of its radii.
-const FORK: f64 = 1.5;
 /// A neurite may touch its own soma up to this way from it: so many of its radii, and of the soma's.
 const OWN_WAY: (f64, f64) = (3.0, 0.25);
-/// The soma bulges towards its neurites: it reaches this many of its radii.
-pub(super) const SOMA_REACH: f64 = 1.1;
-/// Boxes that one segment looks at, at most, and contacts that it may have with segments after it.
+/// Boxes that one segment looks at, at most, and contacts that it may have with segments after it. A guard.
 pub(super) const MAX_LOOKS: usize = 256;
 const MAX_CONTACTS: usize = 32;
-/// Boxes that all somata look at, for each segment of the cell.
+/// Boxes that all somata look at, for each segment of the cell. A guard.
 const SOMA_LOOKS: usize = 64;
 
 /// Two segments that may not touch, by their lower ends, `a` before `b`.
@@ -144,7 +140,7 @@ pub(super) fn search(
 /// Whether the way between two places is so short that surfaces of these `radii` (their sum, µm) meet there.
 pub(super) fn may_touch(rods: &Rods, a: OnSegment, b: OnSegment, radii: f64) -> bool {
     rods.paths.way(a, b).is_some_and(|way| {
-        let fork = way.fork.map_or(0.0, |fork| FORK * rods.radius(fork));
+        let fork = way.fork.map_or(0.0, |fork| rods.radius(fork));
         way.length <= MAX_WAY * radii.max(fork)
     })
 }
@@ -219,7 +215,7 @@ impl View<'_> {
         } = found;
         for (soma, sphere) in self.rods.somata.iter().enumerate() {
             let Some(sphere) = sphere else { continue };
-            let bounds = Bounds::around([sphere.center; 2], SOMA_REACH * sphere.farthest());
+            let bounds = Bounds::around([sphere.center; 2], sphere.farthest());
             self.boxes.overlapping(&bounds, |segment| {
                 if looks == 0 {
                     *complete = false;
@@ -242,7 +238,7 @@ impl View<'_> {
         let radius = self.radius_at(segment, s);
         let place = ends[0].lerp(ends[1], s);
         let (distance, surface) = (place.distance(sphere.center), sphere.towards(place));
-        let near = SOMA_REACH * surface + (1.0 + self.margin.share()) * radius;
+        let near = surface + (1.0 + self.margin.share()) * radius;
         let origin = self.rods.paths.origin(segment);
         let own = origin.filter(|o| o.soma == soma).is_some_and(|origin| {
             let way = self.on_segment(segment, s).arc + origin.way;

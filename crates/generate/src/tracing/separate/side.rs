@@ -15,11 +15,12 @@ use crate::tracing::NONE;
 
 /// Axes nearer than this many radii of the thinner one tell no side.
 pub(super) const DEEP: f64 = 0.6;
-/// Sine of the angle between two axes above which the side is along their common normal.
+/// Sine of the angle between two axes above which the side is along their common normal, and share of a neighbor's side that
+/// a pair can use.
 pub(super) const CROSSED: f64 = 0.2;
 /// How far along its branch a course is judged, in sums of the radii.
 const COURSE: f64 = 4.0;
-/// Points that a walk along a branch passes, at most.
+/// Points that a walk along a branch passes, at most. A guard.
 const MAX_STEPS: usize = 64;
 
 /// Directions from `b` to `a`, by pair of segments. It is only looked up, never gone through, so the order of
@@ -180,7 +181,7 @@ impl Axes {
             let normal = direction(normal);
             side = normal * side.dot(normal);
         }
-        (side.length() >= 0.3).then(|| direction(side))
+        (side.length() >= CROSSED).then(|| direction(side))
     }
 }
 

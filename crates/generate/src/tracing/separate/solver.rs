@@ -7,13 +7,13 @@ use neurotess_mesh::Watch;
 use super::elastic::Elastic;
 use super::geometry::{closest, direction};
 use super::rods::Rods;
-use super::search::{Found, Margin, SOMA_REACH, SomaContact, deepest, search};
+use super::search::{Found, Margin, SomaContact, deepest, search};
 use super::side::{self, CROSSED, DEEP, Pair, Sides};
 use super::spread::{GAP, Spread};
 
-/// Searches for contacts, at most.
+/// Searches for contacts, at most. A guard.
 const MAX_SEARCHES: usize = 30;
-/// The same in a crowd, of which each search sees a part only.
+/// The same in a crowd, of which each search sees a part only. A guard.
 const MAX_IN_CROWD: usize = 4;
 /// Sweeps between two searches.
 const SWEEPS: usize = 12;
@@ -26,13 +26,11 @@ const MARGIN: Margin = Margin {
 const WITHOUT_MEMORY: usize = 6;
 /// A contact counts if its line stands across both branches: largest cosine to an axis.
 const SLANT: f64 = 0.6;
-/// Share of a contact's depth that one sweep takes away.
-const RELAXATION: f64 = 0.9;
 /// Farthest that one sweep pushes a pair: so many radii of the thinner, and of the thicker one.
 const STEP: (f64, f64) = (0.5, 0.1);
 /// The same at a soma: radii of the branch, and of the soma.
 const SOMA_STEP: (f64, f64) = (0.5, 0.02);
-/// After so many searches without a better state there is no hope for one.
+/// After so many searches without a better state there is no hope for one. A guard.
 const MAX_WAITING: usize = 10;
 
 /// Moves the points of the rods. Returns whether each search saw all contacts.
@@ -142,7 +140,7 @@ impl Solver<'_> {
         let out = segment.at(&self.elastic, s) - sphere.center;
         let surface = sphere.surface(direction(out));
         let radius = segment.radius(rods, s);
-        let lack = SOMA_REACH * surface + radius * (1.0 + GAP) - out.length();
+        let lack = surface + radius * (1.0 + GAP) - out.length();
         let weight = segment.weight(&self.elastic, s);
         if lack > 0.0 && weight > 0.0 {
             let most = SOMA_STEP.0 * radius + SOMA_STEP.1 * surface;
@@ -165,7 +163,7 @@ impl Solver<'_> {
         if distance >= needed || distance.is_nan() {
             return;
         }
-        let meet = distance <= 0.05 * thinner;
+        let meet = distance <= 0.0;
         let line = if meet {
             DVec3::ZERO
         } else {
@@ -195,7 +193,7 @@ impl Solver<'_> {
         let weight = a.weight(elastic, s) + b.weight(elastic, t);
         if weight > 0.0 {
             let most = STEP.0 * thinner + STEP.1 * ra.max(rb);
-            let push = normal * (RELAXATION * depth.min(most) / weight);
+            let push = normal * (depth.min(most) / weight);
             a.push(elastic, s, push);
             b.push(elastic, t, -push);
         }
@@ -250,7 +248,7 @@ impl Segment {
 
     /// Whether a place is at a free end, where a push may come from any side.
     fn free_at(self, rods: &Rods, share: f64) -> bool {
-        (share > 0.999 && rods.free_end(self.below)) || (share < 0.001 && rods.free_end(self.above))
+        (share >= 1.0 && rods.free_end(self.below)) || (share <= 0.0 && rods.free_end(self.above))
     }
 
     /// How easily a place moves.

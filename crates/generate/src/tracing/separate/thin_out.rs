@@ -9,7 +9,7 @@ use crate::tracing::{NONE, off_segment};
 const TOLERANCE: f64 = 0.05;
 /// And by this share of the free room there.
 const ROOM: f64 = 0.4;
-/// Changes below this one (radii) are rounding.
+/// Changes below this one (radii) are rounding. A guard.
 const ROUNDING: f64 = 1e-9;
 
 /// Leaves out added points (Douglas, Peucker, 1973), each run of them between two traced points by itself.
