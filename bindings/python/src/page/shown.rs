@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use neurotess::circuit::{self as circuits, Instance, NodeRef, soma_center};
 use neurotess::coloring::{self, with_middles};
-use neurotess::generate::{GenerateOptions, generate_stoppable, unused_kinds};
-use neurotess::mesh::CoarseMesh;
+use neurotess::generate::{GenerateOptions, generate_watched, unused_kinds};
+use neurotess::mesh::{CoarseMesh, Watch};
 use neurotess::morphology::{Morphology, NeuriteKind};
 use neurotess::render::Placement;
 use neurotess::web::PageCell;
@@ -136,7 +136,7 @@ impl Shown {
         stopped: &AtomicBool,
     ) -> Result<Vec<CoarseMesh>, Unmade> {
         let mesh = |cell: &Arc<Morphology>| {
-            let generated = generate_stoppable(cell, options, || 0.0, stopped);
+            let generated = generate_watched(cell, options, &Watch::stopped_by(stopped));
             let generated = generated.map_err(|e| Unmade::Mesh(format!("{}: {e}", cell.name)))?;
             Ok(generated.mesh)
         };
