@@ -18,6 +18,8 @@ use crate::tracing::SomaSphere;
 const MAX_WAY: f64 = 2.0;
 /// A neurite may touch its own soma up to this way from it: so many of its radii, and of the soma's.
 const OWN_WAY: (f64, f64) = (3.0, 0.25);
+/// The soma bulges towards its neurites: it reaches this many of its radii. With 1 it crosses two branches of IF4_140201.
+pub(super) const SOMA_REACH: f64 = 1.1;
 /// Boxes that one segment looks at, at most, and contacts that it may have with segments after it. A guard.
 pub(super) const MAX_LOOKS: usize = 256;
 const MAX_CONTACTS: usize = 32;
@@ -215,7 +217,7 @@ impl View<'_> {
         } = found;
         for (soma, sphere) in self.rods.somata.iter().enumerate() {
             let Some(sphere) = sphere else { continue };
-            let bounds = Bounds::around([sphere.center; 2], sphere.farthest());
+            let bounds = Bounds::around([sphere.center; 2], SOMA_REACH * sphere.farthest());
             self.boxes.overlapping(&bounds, |segment| {
                 if looks == 0 {
                     *complete = false;
@@ -238,7 +240,7 @@ impl View<'_> {
         let radius = self.radius_at(segment, s);
         let place = ends[0].lerp(ends[1], s);
         let (distance, surface) = (place.distance(sphere.center), sphere.towards(place));
-        let near = surface + (1.0 + self.margin.share()) * radius;
+        let near = SOMA_REACH * surface + (1.0 + self.margin.share()) * radius;
         let origin = self.rods.paths.origin(segment);
         let own = origin.filter(|o| o.soma == soma).is_some_and(|origin| {
             let way = self.on_segment(segment, s).arc + origin.way;

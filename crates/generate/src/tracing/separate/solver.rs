@@ -7,7 +7,7 @@ use neurotess_mesh::Watch;
 use super::elastic::Elastic;
 use super::geometry::{closest, direction};
 use super::rods::Rods;
-use super::search::{Found, Margin, SomaContact, deepest, search};
+use super::search::{Found, Margin, SOMA_REACH, SomaContact, deepest, search};
 use super::side::{self, CROSSED, DEEP, Pair, Sides};
 use super::spread::{GAP, Spread};
 
@@ -140,7 +140,7 @@ impl Solver<'_> {
         let out = segment.at(&self.elastic, s) - sphere.center;
         let surface = sphere.surface(direction(out));
         let radius = segment.radius(rods, s);
-        let lack = surface + radius * (1.0 + GAP) - out.length();
+        let lack = SOMA_REACH * surface + radius * (1.0 + GAP) - out.length();
         let weight = segment.weight(&self.elastic, s);
         if lack > 0.0 && weight > 0.0 {
             let most = SOMA_STEP.0 * radius + SOMA_STEP.1 * surface;

@@ -90,7 +90,8 @@ fn far_spines_cost_nothing_and_leave_their_ink() {
     };
     for from in [200.0, 300.0, 450.0, 800.0] {
         let change = worst(from);
-        // Measured on lavapipe: 1.053, 1.030, 0.924 and 0.750; the first two also if none are left out.
-        assert!(change < 1.08, "{from}: {change}");
+        // Measured on lavapipe: 1.085, 1.026, 0.917 and 0.767; the first two also if none are left out. With the meshes of before
+        // 2026-11-29, whose twigs begin otherwise, 1.053, 1.030, 0.924 and 0.750.
+        assert!(change < 1.11, "{from}: {change}");
     }
 }
