@@ -7,8 +7,8 @@ use neurotess_web::{PageMarkers, WebError, modules, packed_parts};
 use crate::unpacked::Unpacked;
 use crate::written::{Meshed, page_of, written};
 
-/// Most bytes of what is the same in all pages. 87,000 before they said where a cell is drawn without WebGPU and WebGL 2.
-const HOST: usize = 87_200;
+/// Most bytes of what is the same in all pages: 87,967, of which 800 are where lofts go over from trunk to branch.
+const HOST: usize = 88_200;
 
 #[neurotess_testing::test]
 fn a_page_asks_for_nothing() {
