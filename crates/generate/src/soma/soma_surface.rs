@@ -23,7 +23,8 @@ pub(crate) struct SomaRequest<'a> {
 }
 
 /// Share by which a soma is off what it is to keep from which on its neurites pull too hard. Of the reference cells only the
-/// soma of `Neuron.h5` is off by more than a thousandth with its rings where they were traced, by a quarter.
+/// soma of `Neuron.h5` is off by more than a thousandth of its volume with its rings where they were traced, by a quarter;
+/// nothing else tuned it.
 const MOST_OFF: f64 = 0.02;
 
 /// Tries before a surface with folds is handed back. A guard.
