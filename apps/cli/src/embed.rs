@@ -3,9 +3,3 @@
 //! Meshes are those of the library (`neurotess::recipe`).
 
 pub use crate::commands::convert::EditRecipe;
-#[cfg(feature = "gpu")]
-pub use crate::commands::html::{PageContent, page_recording};
-#[cfg(feature = "render")]
-pub use crate::commands::render::{
-    Device, DrawError, Drawing, DrawingColors, DrawingInput, Open, Picked, palette,
-};

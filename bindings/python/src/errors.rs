@@ -48,6 +48,20 @@ pub(crate) fn option(py: Python<'_>, message: &str) -> PyErr {
     made(py, "option_error", (message,))
 }
 
+/// An option of a picture that is wrong.
+#[cfg(feature = "render")]
+pub(crate) fn draw_option(py: Python<'_>, error: &neurotess::options::OptionError) -> PyErr {
+    use neurotess::options::OptionError;
+    match error {
+        OptionError::Value {
+            name,
+            value,
+            needed,
+        } => made(py, "value_error", (name, value, needed)),
+        other => option(py, &other.to_string()),
+    }
+}
+
 /// A file that cannot be written.
 pub(crate) fn output(error: &OutputError) -> PyErr {
     match error {

@@ -1,7 +1,11 @@
-//! Options of meshes: keywords as a value of the library, which checks them.
+//! Options of meshes and pictures: keywords as values of the library, which checks them.
 
 use std::collections::BTreeMap;
 
+#[cfg(feature = "render")]
+use neurotess::drawing::{DrawOptions, picture_of_png};
+#[cfg(feature = "render")]
+use neurotess::options::OptionError;
 use neurotess::recipe::{MeshOptions, NamedOptions, OptionValue, OptionsError, Spelling};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -24,6 +28,67 @@ pub(crate) fn mesh_options(keywords: &Bound<'_, PyDict>) -> PyResult<MeshOptions
         }
     }
     named.options().map_err(wrong)
+}
+
+/// What is drawn, of these keywords; what is None or False has its default.
+///
+/// # Errors
+/// `ValueError` for what is wrong with an option, `TypeError` for what is no value at all.
+#[cfg(feature = "render")]
+pub(crate) fn draw_options(keywords: &Bound<'_, PyDict>) -> PyResult<DrawOptions> {
+    let py = keywords.py();
+    let mut options = DrawOptions::default();
+    if let Some(like) = keywords.get_item("like")?.filter(|like| !like.is_none()) {
+        let file: std::path::PathBuf = like.extract()?;
+        let picture = picture_of_png(&file);
+        options.picture = picture.map_err(|e| errors::render(py, &e.to_string()))?;
+    }
+    for (keyword, value) in keywords {
+        let Some(value) = option_value(&value)?.filter(|v| *v != OptionValue::Switch(false)) else {
+            continue;
+        };
+        let keyword: String = keyword.extract()?;
+        if keyword == "like" {
+            continue;
+        }
+        let value = json_of(&value);
+        set(&mut options, &keyword, &value).map_err(|e| errors::draw_option(py, &e))?;
+    }
+    Ok(options)
+}
+
+#[cfg(feature = "render")]
+fn set(
+    options: &mut DrawOptions,
+    keyword: &str,
+    value: &serde_json::Value,
+) -> Result<(), OptionError> {
+    match keyword {
+        "no_cache" => options.no_cache = true,
+        "adapter" | "gpu_memory" => options.device.set(keyword, value)?,
+        _ => options.picture.set(keyword, value)?,
+    }
+    Ok(())
+}
+
+/// A value as JSON; numbers that it has not as text, by which they are refused.
+#[cfg(feature = "render")]
+fn json_of(value: &OptionValue) -> serde_json::Value {
+    use serde_json::Value;
+    match value {
+        OptionValue::Switch(value) => Value::Bool(*value),
+        OptionValue::Whole(value) => Value::from(*value),
+        OptionValue::Number(value) => serde_json::Number::from_f64(*value)
+            .map_or(Value::String(value.to_string()), Value::Number),
+        OptionValue::Text(value) => Value::String(value.clone()),
+        OptionValue::List(values) => Value::Array(values.iter().map(json_of).collect()),
+        OptionValue::Map(values) => {
+            let entries = values
+                .iter()
+                .map(|(key, value)| (key.clone(), json_of(value)));
+            Value::Object(entries.collect())
+        }
+    }
 }
 
 /// A value of Python or NumPy; none if it is None.

@@ -10,9 +10,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 use neurotess::circuit::{NodeRef, TimeAxis};
 use neurotess::coloring::{CellSeries, CellValues, MeshValues, OwnNumbers, OwnSeries, OwnValues};
+use neurotess::drawing::{self, Device, DrawError, DrawingInput, OwnData, Picked, Quiet};
+use neurotess::mesh::SurfaceMesh;
 use neurotess::picture::color::{ColorMap, Rgb};
 use neurotess::picture::{Camera, Image, Lens, PngWriter};
-use neurotess_cli::embed::{self, Device, DrawError, DrawingColors, DrawingInput, Picked};
 use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -22,6 +23,8 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::cell::Cell;
 use crate::errors;
 use crate::errors::bug;
+use crate::options::draw_options;
+use crate::surface::Surface;
 use crate::work::{Stop, detached, is_forked, released, stoppable};
 
 /// Adds what draws to the module.
@@ -77,7 +80,7 @@ fn device(_adapter: Option<&str>) -> Result<Arc<Device>, String> {
 }
 
 /// What is drawn; nothing when it is closed.
-type Shared = Arc<Mutex<Option<embed::Drawing>>>;
+type Shared = Arc<Mutex<Option<drawing::Drawing>>>;
 
 /// Cells that are drawn again and again.
 #[pyclass(frozen, module = "neurotess._neurotess")]
@@ -91,6 +94,12 @@ pub(crate) struct Drawing {
     /// How many pictures the options ask for.
     #[pyo3(get)]
     pictures: usize,
+    /// How they are made, as PNG files tell it.
+    #[pyo3(get)]
+    recipe: String,
+    /// Whether nothing is behind the cells.
+    #[pyo3(get)]
+    transparent: bool,
 }
 
 /// Eye, target, direction upwards (µm), vertical angle of view (radians), and whether there is no
@@ -211,23 +220,29 @@ impl Drawing {
         py: Python<'_>,
         cells: Vec<PyRef<'_, Cell>>,
         circuit: Option<GivenCircuit>,
-        options: Vec<String>,
+        keywords: &Bound<'_, PyDict>,
         values: Option<GivenValues<'_>>,
         series: Option<GivenSeries<'_>>,
+        surfaces: Vec<Option<PyRef<'_, Surface>>>,
         meshes: Option<GivenMeshValues<'_>>,
         scale: Option<Vec<Rgb>>,
-        times: Option<Vec<f64>>,
-        adapter: Option<String>,
     ) -> PyResult<Self> {
-        let named = adapter.map(|name| format!("--adapter={name}"));
-        let options: Vec<String> = options.into_iter().chain(named).collect();
-        let (own, time) = own_numbers(values, series)?;
-        let colors = DrawingColors {
-            own,
-            time,
-            times,
-            meshes: meshes.map(mesh_values).transpose()?,
-            scale,
+        let mut options = draw_options(keywords)?;
+        options.scale = scale;
+        let (numbers, time) = own_numbers(values, series)?;
+        if let Some(time) = time {
+            let time = options.picture.set("time", &time.into());
+            time.map_err(|e| errors::draw_option(py, &e))?;
+        }
+        let surface = |surface: &Option<PyRef<'_, Surface>>| {
+            let surface = surface.as_ref().map(|surface| surface.collected(py));
+            surface.transpose()
+        };
+        let surfaces: PyResult<Vec<Option<SurfaceMesh>>> = surfaces.iter().map(surface).collect();
+        let own = OwnData {
+            numbers,
+            surfaces: surfaces?,
+            mesh_values: meshes.map(mesh_values).transpose()?,
         };
         let cells: Vec<_> = cells.iter().map(|c| Arc::clone(&c.morphology)).collect();
         let made = stoppable(py, None, &Stop::default(), move |stopped| {
@@ -241,11 +256,23 @@ impl Drawing {
                 Some((path, _)) => DrawingInput::Circuit(path, nodes.as_deref()),
                 None => DrawingInput::Cells(&named),
             };
-            embed::Drawing::new(&device, input, options, colors, stopped)
+            let host = Quiet::stopped_by(stopped);
+            let made = drawing::Drawing::new(input, options, own, &device, &host);
+            let messages = host.take_messages();
+            match made {
+                Ok(drawing) => Ok((drawing, messages)),
+                Err(DrawError::Failed(why)) => {
+                    let all: Vec<String> = messages.into_iter().chain([why]).collect();
+                    Err(DrawError::Failed(all.join("; ")))
+                }
+                Err(e) => Err(e),
+            }
         })?;
         let (drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
         Ok(Self {
             pictures: drawing.pictures(),
+            recipe: drawing.recipe(),
+            transparent: drawing.options().picture.look.transparent,
             by_adapter: drawing.by_adapter(),
             shared: Arc::new(Mutex::new(Some(drawing))),
             messages,
@@ -348,7 +375,7 @@ impl Drawing {
     fn with(
         &self,
         py: Python<'_>,
-        draw: impl FnOnce(&mut embed::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
+        draw: impl FnOnce(&mut drawing::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
         + Send
         + 'static,
     ) -> PyResult<Py<PyArray3<u8>>> {
@@ -378,6 +405,7 @@ fn png<'py>(
     py: Python<'py>,
     pixels: PyReadonlyArray3<'py, u8>,
     transparent: bool,
+    recipe: Option<&str>,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let view = pixels.as_array();
     let (height, width, four) = view.dim();
@@ -392,7 +420,8 @@ fn png<'py>(
     let written = detached(py, || {
         let bytes = Bytes::default();
         let size = [image.width, image.height];
-        let mut png = PngWriter::new(bytes.clone(), size, transparent)?;
+        let text = recipe.map(|recipe| (drawing::PNG_KEYWORD, recipe));
+        let mut png = PngWriter::with_text(bytes.clone(), size, transparent, text)?;
         png.write(&image)?;
         png.finish()?;
         std::io::Result::Ok(bytes.0.take())
@@ -431,8 +460,8 @@ fn closed() -> PyErr {
 
 pub(crate) fn undrawn(py: Python<'_>, error: &DrawError) -> PyErr {
     match error {
-        DrawError::Option(message) => errors::option(py, message),
-        DrawError::Failed(message) => errors::render(py, message),
+        DrawError::Option(wrong) => errors::draw_option(py, wrong),
         DrawError::Memory(message) => PyMemoryError::new_err(message.clone()),
+        other => errors::render(py, &other.to_string()),
     }
 }

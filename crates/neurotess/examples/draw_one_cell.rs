@@ -4,7 +4,9 @@
 
 use std::path::PathBuf;
 
-use neurotess::recipe::{DrawOptions, MeshOptions};
+use neurotess::options::Picture;
+use neurotess::options::words::Fit;
+use neurotess::recipe::MeshOptions;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
@@ -12,6 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let out = arguments.next().unwrap_or("granule.png".into());
     let tracing = neurotess::read(cell)?;
     let cell = neurotess::mesh(&tracing, &MeshOptions::default())?;
-    let picture = neurotess::draw(&[&cell], &DrawOptions::default().with_scale_bar(0.0))?;
-    Ok(picture.save(out)?)
+    let mut picture = Picture::default();
+    picture.look.scale_bar = Some(Fit::Auto);
+    Ok(neurotess::draw(&[&cell], &picture)?.save(out)?)
 }

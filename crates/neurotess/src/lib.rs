@@ -66,14 +66,16 @@
 //! | [`synth`] | synthetic neurons and circuits | `synth` |
 //! | [`generate`] | from a morphology to a coarse mesh | |
 //! | [`refine`] | from a coarse mesh to a surface | |
-//! | [`picture`] | what a picture is: cameras, colors, looks, legends | `render` |
+//! | [`options`] | options of pictures as values: of flags, keywords, files | `options` |
+//! | [`drawing`] | pictures and films by one value of options | `render` |
+//! | [`picture`] | what a picture is: cameras, colors, looks, legends | `options` |
 //! | [`raster`] | pictures by the processor | `render` |
 //! | [`render`] | pictures by graphics hardware | `gpu` |
-//! | [`coloring`] | what the colors of pictures tell | `render` |
+//! | [`coloring`] | what the colors of pictures tell | `options` |
 //! | [`web`] | cells as one HTML page | `gpu` |
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
-//! | [`recipe`] | from a tracing to the mesh that a purpose needs, its files and its picture: all stages by one value of options | pictures: `render` |
+//! | [`recipe`] | from a tracing to the mesh that a purpose needs, and its files: all stages by one value of options | |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
@@ -84,21 +86,25 @@
 pub use neurotess_cache as cache;
 #[cfg(feature = "circuit")]
 pub use neurotess_circuit as circuit;
-#[cfg(feature = "render")]
+#[cfg(feature = "options")]
 pub use neurotess_color as coloring;
+#[cfg(feature = "render")]
+pub use neurotess_drawing as drawing;
+#[cfg(feature = "render")]
+pub use neurotess_drawing::draw;
 pub use neurotess_formats as formats;
 pub use neurotess_generate as generate;
 pub use neurotess_mesh as mesh;
 pub use neurotess_morphology as morphology;
+#[cfg(feature = "options")]
+pub use neurotess_options as options;
 pub use neurotess_output as output;
-#[cfg(feature = "render")]
+#[cfg(feature = "options")]
 pub use neurotess_picture as picture;
 pub use neurotess_plot as plot;
 #[cfg(feature = "render")]
 pub use neurotess_raster as raster;
 pub use neurotess_recipe as recipe;
-#[cfg(feature = "render")]
-pub use neurotess_recipe::draw;
 pub use neurotess_recipe::{mesh, read};
 pub use neurotess_refine as refine;
 #[cfg(feature = "gpu")]

@@ -113,6 +113,19 @@ impl<W: Write + 'static> PngWriter<W> {
     /// # Errors
     /// Those of the file.
     pub fn new(file: W, size: [u32; 2], alpha: bool) -> std::io::Result<Self> {
+        Self::with_text(file, size, alpha, None)
+    }
+
+    /// The same with a text under a keyword, which programs that show pictures leave alone.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn with_text(
+        file: W,
+        size: [u32; 2],
+        alpha: bool,
+        text: Option<(&str, &str)>,
+    ) -> std::io::Result<Self> {
         let mut encoder = png::Encoder::new(file, size[0], size[1]);
         encoder.set_color(if alpha {
             png::ColorType::Rgba
@@ -123,6 +136,9 @@ impl<W: Write + 'static> PngWriter<W> {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         // Ten times as quick as the balanced one; files are a fifth to two fifths larger.
         encoder.set_compression(png::Compression::Fast);
+        if let Some((keyword, text)) = text {
+            encoder.add_itxt_chunk(keyword.to_owned(), text.to_owned())?;
+        }
         let writer = encoder.write_header()?;
         Ok(Self {
             stream: writer.into_stream_writer()?,
@@ -155,6 +171,22 @@ impl<W: Write + 'static> PngWriter<W> {
     pub fn finish(self) -> std::io::Result<()> {
         Ok(self.stream.finish()?)
     }
+}
+
+/// The text that a PNG file has under a keyword; none if it has none.
+///
+/// # Errors
+/// The file is no PNG, or cannot be read.
+pub fn png_text(
+    file: impl std::io::BufRead + std::io::Seek,
+    keyword: &str,
+) -> std::io::Result<Option<String>> {
+    let reader = png::Decoder::new(file).read_info()?;
+    let mut texts = reader.info().utf8_text.iter();
+    let found = texts.find(|text| text.keyword == keyword);
+    Ok(found
+        .map(png::text_metadata::ITXtChunk::get_text)
+        .transpose()?)
 }
 
 #[cfg(test)]

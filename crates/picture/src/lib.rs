@@ -36,7 +36,7 @@ pub mod state {
     pub use crate::look::{GHOSTED, HIGHLIGHTED, OUTLINED, WITHOUT_NEURITES, WITHOUT_SOMA};
 }
 
-pub use image::{Image, PngWriter};
+pub use image::{Image, PngWriter, png_text};
 pub use instance::{Instance, SceneError, Template, TemplateId, check_placement};
 pub use least_width::usual_least_width;
 pub use look::{Clip, HALF_WIDTH, KEY, Light, Look, edge_color};

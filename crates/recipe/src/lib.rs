@@ -13,8 +13,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! With the feature `render`, `draw` makes a picture of it: that of `neurotess render`.
-//!
 //! What makes a mesh for simulators of a tracing is here: branches that were traced through one another are moved apart,
 //! what still crosses is merged or pressed in, holes that merging leaves are filled, triangles become such as solvers
 //! like, and tubes that would close a loop become thinner. The parts are those of `generate`, `refine` and `union`.
@@ -26,8 +24,6 @@ pub const MESHES: u32 = 4;
 
 mod cell_mesh;
 mod checks;
-#[cfg(feature = "render")]
-mod draw;
 mod error;
 mod files;
 pub mod memory;
@@ -48,8 +44,6 @@ mod warning;
 mod words;
 
 pub use cell_mesh::{CellMesh, mesh, mesh_from, mesh_watched};
-#[cfg(feature = "render")]
-pub use draw::{DrawError, DrawOptions, Picture, PictureSaveError, draw};
 pub use error::{MeshError, OptionsError};
 pub use files::{
     CellFiles, FileOptions, FileSurface, PartFile, SaveError, SaveOptions, Saved, WrittenFiles,

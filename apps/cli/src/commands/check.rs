@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use crate::io::batch::each;
 use crate::io::inputs::{Input, Inputs};
-use crate::io::meshes::named;
 use crate::io::output::is_standard;
 use crate::io::standard_input::standard_input;
 use crate::report::{Entry, Failure, Reporter};
@@ -69,7 +68,7 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
         (false, Some(format)) => mesh::read_as(&input.path, format),
         (false, None) => mesh::read(&input.path),
     };
-    let mut surface = read.map_err(|e| Failure(named(&file, &e)))?;
+    let mut surface = read.map_err(|e| Failure(e.in_file(&file)))?;
     if args.merge {
         mesh::merge_identical(&mut surface);
     }

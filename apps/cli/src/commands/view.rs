@@ -4,17 +4,16 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess::options::groups::{DeviceOptions, MarkerOptions as AskedMarkers, Rings};
+use neurotess::options::words::MeshBeside;
+use neurotess::options::{MeshesBeside, OptionError};
 use neurotess_viewer::CommandListener;
 use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
 
 use crate::io::inputs::Inputs;
 use crate::io::morphologies::MORPHOLOGIES;
 use crate::options::cache::CacheArgs;
-use crate::options::gpu::GpuArgs;
-use crate::options::markers::MarkerArgs;
-use crate::options::meshes::{MeshArg, MeshArgs};
-use crate::options::rings::RingArgs;
-use crate::report::Reporter;
+use crate::report::{Reporter, usage};
 
 /// `neurotess view`
 #[derive(Args, Debug)]
@@ -33,18 +32,18 @@ pub(crate) struct ViewArgs {
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) rings: RingArgs,
+    pub(crate) rings: Rings,
     /// Values of a simulation of the circuit: a SONATA report, or a file of spikes
     #[arg(long, value_name = "FILE", requires = "inputs")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) markers: MarkerArgs,
+    pub(crate) markers: AskedMarkers,
     #[command(flatten)]
-    pub(crate) meshes: MeshArgs,
+    pub(crate) meshes: MeshesBeside,
     #[command(flatten)]
     pub(crate) cache: CacheArgs,
     #[command(flatten)]
-    pub(crate) gpu: GpuArgs,
+    pub(crate) device: DeviceOptions,
 }
 
 /// Runs the command.
@@ -69,11 +68,11 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
             ..SomaEdit::default()
         },
         report: args.report.clone(),
-        markers: markers(&args.markers)?,
+        markers: markers(&args.markers).or_else(|e| usage(e.to_string()))?,
         meshes: args.meshes.mesh.iter().enumerate().map(mesh).collect(),
         without_caches: args.cache.no_cache,
-        adapter: args.gpu.adapter.clone(),
-        gpu_memory: args.gpu.gpu_memory,
+        adapter: args.device.adapter.clone(),
+        gpu_memory: args.device.gpu_memory.map(|bytes| bytes.0),
     };
     let listener = reporter
         .verbose()
@@ -85,7 +84,7 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
 }
 
 /// What the window shows of synapses and points.
-fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
+fn markers(asked: &AskedMarkers) -> Result<MarkerOptions, OptionError> {
     asked.check()?;
     let usual = MarkerOptions::default();
     let by = asked.marker_color_by.clone();
@@ -97,16 +96,16 @@ fn markers(asked: &MarkerArgs) -> anyhow::Result<MarkerOptions> {
         column: by.filter(|_| asked.points.is_some()),
         points: asked.points.clone(),
         shape: asked.shape(),
-        size: asked.marker_size.map_or(usual.size, |size| size as f32),
+        size: asked.marker_size.map_or(usual.size, |size| size.0 as f32),
         ..usual
     })
 }
 
 /// A mesh of the window. There the camera fits what one cannot see through.
-fn mesh((index, arg): (usize, &MeshArg)) -> MeshEntry {
+fn mesh((index, arg): (usize, &MeshBeside)) -> MeshEntry {
     let usual = MeshEntry::new(arg.file.clone(), index);
     MeshEntry {
-        color: arg.color.unwrap_or(usual.color),
+        color: arg.color.map_or(usual.color, |color| color.0),
         opacity: arg.opacity as f32,
         edges: arg.edges,
         scale: arg.scale as f32,

@@ -4,7 +4,6 @@ pub(crate) mod batch;
 pub(crate) mod circuits;
 pub(crate) mod claims;
 pub(crate) mod inputs;
-pub(crate) mod meshes;
 pub(crate) mod morphologies;
 pub(crate) mod output;
 pub(crate) mod record;

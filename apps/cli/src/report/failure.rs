@@ -37,6 +37,12 @@ pub(crate) fn usage<T>(message: impl Into<String>) -> anyhow::Result<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Failure(pub(crate) String);
 
+impl From<neurotess::circuit::CircuitError> for Failure {
+    fn from(error: neurotess::circuit::CircuitError) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// An input that failed, in the JSON list.
 #[derive(Serialize)]
 pub(crate) struct Failed {

@@ -33,10 +33,8 @@ pub(crate) struct Reporter {
     broken: AtomicBool,
     /// Whether what was compared differs.
     different: AtomicBool,
-    /// What is told, where it is not printed.
-    recorded: Option<Mutex<Vec<String>>>,
     /// Set by another thread that asks to stop.
-    stopped: Arc<AtomicBool>,
+    stopped: AtomicBool,
 }
 
 impl Reporter {
@@ -56,8 +54,7 @@ impl Reporter {
             occupied: AtomicBool::new(false),
             broken: AtomicBool::new(false),
             different: AtomicBool::new(false),
-            recorded: None,
-            stopped: Arc::default(),
+            stopped: AtomicBool::new(false),
         };
         if let Some(threads) = common.threads.filter(|&n| n > most_threads()) {
             let most = most_threads();
@@ -66,29 +63,6 @@ impl Reporter {
             ));
         }
         reporter
-    }
-
-    /// A reporter that prints nothing: warnings and errors are kept. Work for it ends soon after `stopped` is set.
-    #[cfg(feature = "render")]
-    pub(crate) fn recording(common: Common, stopped: &Arc<AtomicBool>) -> Self {
-        let quiet = Self::new(Common {
-            quiet: true,
-            ..common
-        });
-        Self {
-            recorded: Some(Mutex::default()),
-            stopped: Arc::clone(stopped),
-            ..quiet
-        }
-    }
-
-    /// The warnings and errors that were kept.
-    #[cfg(feature = "render")]
-    pub(crate) fn take_recorded(&self) -> Vec<String> {
-        let recorded = self.recorded.as_ref();
-        recorded.map_or_else(Vec::new, |kept| {
-            std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner))
-        })
     }
 
     /// Set by another thread that asks to stop.
@@ -188,7 +162,7 @@ impl Reporter {
 
     /// Prints a warning.
     pub(crate) fn warning(&self, message: &str) {
-        if !self.common.quiet || self.recorded.is_some() {
+        if !self.common.quiet {
             self.say("warning", "33", message);
         }
     }
@@ -248,13 +222,6 @@ impl Reporter {
     fn say(&self, word: &str, color: &str, message: &str) {
         // One failure is one line, whatever characters a file's name or content has.
         let line = plain(message).replace(['\n', '\t'], " ");
-        if let Some(recorded) = &self.recorded {
-            recorded
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(line);
-            return;
-        }
         let word = if self.color {
             format!("\x1b[1;{color}m{word}:\x1b[0m")
         } else {

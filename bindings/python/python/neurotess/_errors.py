@@ -136,6 +136,15 @@ def option_error(message: str) -> OptionError:
     return OptionError(f"{option}{shown}: {needed}", option, needed)
 
 
+def value_error(option: str, given: str, needed: str) -> OptionError:
+    """The exception for an option that has another value than it can have."""
+    from ._words import named
+
+    option, needed = named(option, needed)
+    shown = "" if option == "meshes" else f"={given!r}"
+    return OptionError(f"{option}{shown}: {needed}", option, needed)
+
+
 def with_given(error: OptionError, options: Mapping[str, Any]) -> OptionError:
     """The same error with the value as it was given to a function."""
     import reprlib

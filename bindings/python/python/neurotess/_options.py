@@ -27,6 +27,14 @@ def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
         raise with_given(error, options) from None
 
 
+def drawn(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of pictures as the module takes them: paths as text, lengths in µm."""
+    given = {name: value for name, value in options.items() if value is not None and value is not False}
+    files = {name: os.fspath(value) for name, value in given.items() if isinstance(value, os.PathLike)}
+    lengths = {name: plain(f"{name}=", value, "um") for name, value in given.items() if unit_of(value) is not None}
+    return {**given, **files, **lengths}
+
+
 def arguments(options: Mapping[str, Any]) -> list[str]:
     """Options as arguments: ``max_error=0.1`` is ``--max-error=0.1``; None and False are left out."""
     words: list[str] = []
@@ -36,10 +44,6 @@ def arguments(options: Mapping[str, Any]) -> list[str]:
             continue
         if value is True:
             words.append(flag)
-        elif name == "mesh":
-            words += [f"{flag}={one}" for one in value]
-        elif name in ("ring", "set_color"):
-            words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
         elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):
             words.append(f"{flag}={word(value)}")
         else:

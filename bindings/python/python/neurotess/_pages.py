@@ -156,7 +156,7 @@ def html(
 #: Options of pages that say how cells are meshed, and what they begin with.
 MESHED = ("soma", "ring", "types", "radius_factor", "radius", "min_radius")
 LOOK = ("color_by", "palette", "colormap", "range", "background", "least_width")
-#: Options of what a page shows beside cells, which the command line reads.
+#: Options of what a page shows beside cells.
 CONTENT = ("report", "time", "synapses", "synapse_side", "points", "marker_color_by", "marker_size")
 
 
@@ -164,10 +164,9 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
     """The page with these options of `html`."""
     if not _neurotess.CAN_PAGE:
         raise RenderError("this build makes no pages: build it with the feature 'gpu'")
-    recipe = _options.recipe({name: options.get(name) for name in MESHED})
-    given = {name: options.get(name) for name in LOOK}
+    given = {name: options.get(name) for name in (*MESHED, *LOOK)}
     content = _content(what, {name: options.get(name) for name in CONTENT})
-    keywords = {**_keywords(given), "title": options.get("title"), "content": _options.arguments(content)}
+    keywords = _options.drawn({**_with_colors(given), **content})
     chosen = {name: options.get(name) for name in SELECTION}
     values = options.get("values")
     if given["color_by"] == "value" and values is None and content["report"] is None:
@@ -183,7 +182,9 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
         cells = _cells(what, chosen)
     still, series = _told(cells, is_alone(what), options)
     try:
-        page = _neurotess.page([cell._cell for cell in cells], circuit, recipe, keywords, still, series, force)
+        page = _neurotess.page(
+            [cell._cell for cell in cells], circuit, keywords, options.get("title"), still, series, force
+        )
     except OptionError as error:
         from ._errors import with_given
 
@@ -214,28 +215,3 @@ def _told(cells: list[Any], alone: bool, options: Mapping[str, Any]) -> Told:
     if own["values"] is None and title is not None:
         raise ValueError(f"values_title={title!r} is of values: give values=, too")
     return values_of(cells, alone, {**own, "title": title})
-
-
-def _keywords(given: dict[str, Any]) -> dict[str, Any]:
-    """Options as the module takes them."""
-    from ._words import NEEDED
-
-    colors = _with_colors(given)
-    ends, width = given["range"], given["least_width"]
-    if ends is not None:
-        try:
-            ends = [float(end) for end in ends]
-        except (TypeError, ValueError):
-            ends = []
-        if len(ends) != 2 or not -float("inf") < ends[0] < ends[1] < float("inf"):
-            raise OptionError(f"range={given['range']!r}: {NEEDED['range']}", "range", NEEDED["range"])
-    if width is not None and not 0 <= width < float("inf"):
-        needed = "0 or a number of pixels is needed"
-        raise OptionError(f"least_width={width!r}: {needed}", "least_width", needed)
-    texts = {name: colors[name] for name in ("color_by", "palette", "colormap", "background")}
-    return {
-        **{name: None if text is None else str(text) for name, text in texts.items()},
-        "set_color": list((colors.get("set_color") or {}).items()),
-        "range": ends,
-        "least_width": width,
-    }

@@ -32,9 +32,12 @@ class Image:
     It shows itself in a notebook.
     """
 
-    def __init__(self, pixels: NDArray[np.uint8], *, transparent: bool = False) -> None:
+    def __init__(
+        self, pixels: NDArray[np.uint8], *, transparent: bool = False, recipe: str | None = None
+    ) -> None:
         self._pixels = pixels
         self._transparent = transparent
+        self._recipe = recipe
 
     @property
     def size(self) -> tuple[int, int]:
@@ -50,8 +53,8 @@ class Image:
         return np.asarray(self._pixels, dtype=dtype)
 
     def to_png(self) -> bytes:
-        """The bytes of a PNG file."""
-        return _neurotess.png(self._pixels, self._transparent)
+        """The bytes of a PNG file, which tells how the picture was made: see `like` of `render`."""
+        return _neurotess.png(self._pixels, self._transparent, self._recipe)
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> None:
         """Writes a PNG file; other formats need Pillow."""
@@ -140,6 +143,7 @@ def render(
     cache: bool = True,
     gpu_memory: int | str | None = None,
     adapter: str | None = None,
+    like: str | os.PathLike[str] | None = None,
 ) -> Image:
     """Draws cells or a circuit, without a window: a cell or a file (or whatever `mesh` takes), several of them,
     or a `Circuit`; or surfaces, alone or among cells: a `Mesh`, or any with `vertices` and `faces` (µm), as those of trimesh.
@@ -186,6 +190,8 @@ def render(
     Cells: `soma`, `ring` and `types`, as in `mesh`; of circuits `nodes`, `node_set`, `population`, `region`,
     `sample` and `sample_seed`, as in `Circuit.select`; `cache`: whether the meshes of a large circuit are kept beside it for the next time;
     `gpu_memory`: most memory of the adapter for the tracings of large scenes (bytes, or like ``"512MiB"``).
+
+    `like`: a PNG file of neurotess, whose camera, colors and look the picture has, but for the options that are given.
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
@@ -248,6 +254,7 @@ def render(
         "cache": cache,
         "gpu_memory": gpu_memory,
         "adapter": adapter,
+        "like": like,
     }
     options = ungrouped(options)
     _check_pairs(options)
@@ -312,7 +319,6 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
     report = options.get("report")
     if report is not None and isinstance(what, DrawnCircuit):
         options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
-    options["size"] = _options.joined(options.get("size"), "x")
     options["no_legend"] = not options.pop("legend", True)
     options["no_cache"] = not options.pop("cache", True)
     if times is None and options.get("time") is not None:
@@ -320,9 +326,8 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
     drawing = drawing_of(what, options, options.pop("adapter", None), given, times)
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(message), stacklevel=3)
-    transparent = bool(options.get("transparent"))
     try:
         for number in range(drawing.pictures):
-            yield Image(drawing.draw(number), transparent=transparent)
+            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipe)
     finally:
         drawing.close()

@@ -84,9 +84,6 @@ def drawing_of(
 ) -> _neurotess.Drawing:
     """Cells or a circuit on the device; `given`: the options as the caller gave them, for messages; `times`: of the
     pictures."""
-    # Not at the top: it takes as long to import as all the rest.
-    import tempfile
-
     from . import quiet_adapters
 
     if not _neurotess.CAN_RENDER:
@@ -107,17 +104,15 @@ def drawing_of(
     for name, is_file in (("points", True), ("report", circuit is not None)):
         if is_file and options.get(name) is not None:
             _check_file(options[name])
-    # Meshes in memory are read from files that last as long as that.
-    with tempfile.TemporaryDirectory(prefix="neurotess") as folder:
-        options["mesh"] = words_of(looks, folder)
-        words = _options.arguments(options)
-        colors = still, series, of_meshes, scale
-        try:
-            return _neurotess.Drawing([cell._cell for cell in cells], circuit, words, *colors, times, adapter)
-        except OptionError as error:
-            from ._errors import with_given
+    options["mesh"], surfaces = words_of(looks)
+    keywords = _options.drawn({**options, "times": times, "adapter": adapter})
+    data = still, series, surfaces, of_meshes, scale
+    try:
+        return _neurotess.Drawing([cell._cell for cell in cells], circuit, keywords, *data)
+    except OptionError as error:
+        from ._errors import with_given
 
-            raise with_given(error, given) from None
+        raise with_given(error, given) from None
 
 
 def _own_scale(options: dict[str, Any]) -> list[list[int]] | None:

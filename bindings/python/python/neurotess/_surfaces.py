@@ -156,22 +156,21 @@ def joint_range(of_cells: Any, of_meshes: OfMeshes) -> tuple[float, float] | Non
     return low, high if high > low else low + 1
 
 
-def words_of(looks: list[dict[str, Any]], folder: str) -> list[str]:
-    """Meshes as the command line takes them; those in memory are written into the folder."""
-    words = []
-    for number, look in enumerate(looks):
+def words_of(looks: list[dict[str, Any]]) -> tuple[list[str], list[_neurotess.Surface | None]]:
+    """Meshes beside the cells: a file or a name with the options of how it looks, and the surface, if it is in memory."""
+    words: list[str] = []
+    surfaces: list[_neurotess.Surface | None] = []
+    for look in looks:
         look = dict(look)
         file = look.pop("mesh")
         if look.get("color") is not None:
             look["color"] = text_of(look["color"])
+        surfaces.append(file._surface if isinstance(file, Mesh) else None)
         if isinstance(file, Mesh):
-            name = file.name.replace(os.sep, "_")
-            path = os.path.join(folder, str(number), f"{name}.ply")
-            os.mkdir(os.path.dirname(path))
-            file._surface.write(path, None, "um", True, False, [])
-            file = path
+            # The extension ends the name, which may have commas.
+            file = f"{file.name.replace(os.sep, '_')}.ply"
         given = {name: value for name, value in look.items() if value is not None}
         options = [f"{name}={_options.word(value)}" for name, value in given.items() if not isinstance(value, bool)]
         flags = [name for name, value in given.items() if value is True]
         words.append(",".join([os.fspath(file), *options, *flags]))
-    return words
+    return words, surfaces

@@ -55,5 +55,17 @@ def told(message: str) -> tuple[str | None, str | None, str]:
     return None, None, message
 
 
+def named(option: str, needed: str) -> tuple[str, str]:
+    """An option of pictures and what it needs, as Python has them."""
+    import re
+
+    option = _named(option)
+    if choices := re.fullmatch(r"use ((?:\S+, )*\S+) or (\S+)", needed):
+        *others, last = (repr(name) for name in [*choices[1].split(", "), choices[2]])
+        needed = f"use {', '.join(others)} or {last}"
+    needed = re.sub(r"^true or false is needed$", "True or False is needed", needed)
+    return option, NEEDED.get(option, needed)
+
+
 def _named(option: str) -> str:
     return NAMES.get(option, option)

@@ -1,21 +1,18 @@
 //! Cells as one HTML page: `neurotess html`, of cells in memory.
 
-mod colors;
 mod shown;
 
 use std::io::Write;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use neurotess::coloring::{self, ColorScheme, OwnNumbers, Recording};
+use neurotess::coloring::ColorBy;
+use neurotess::drawing::{self, PageContent, PageError, PageValues, Picked, Quiet};
 use neurotess::mesh::{CoarseMesh, Role};
 use neurotess::morphology::SectionId;
+use neurotess::options::Picture;
 use neurotess::output::{Existing, write_whole};
-use neurotess::render::Look;
-use neurotess::web::{
-    self, MAX_PAGE_BYTES, PageOptions, PageRecording, WebError, shared_page, usual_title,
-};
-use neurotess_cli::embed::{self, DrawError, PageContent, Picked};
+use neurotess::web::{self, MAX_PAGE_BYTES, WebError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,10 +20,9 @@ use pyo3::types::PyDict;
 use crate::cell::Cell;
 use crate::circuit::Circuit;
 use crate::errors;
+use crate::options::draw_options;
 use crate::picture::{GivenSeries, GivenValues, own_numbers, picked_dict, undrawn};
-use crate::surface::Recipe;
 use crate::work::{Stop, detached, stoppable};
-use colors::{Colors, Keywords};
 use shown::{Placed, Shown};
 
 /// Adds what makes pages to the module.
@@ -43,12 +39,8 @@ type GivenNodes<'py> = (PyRef<'py, Circuit>, Vec<(u32, u32)>);
 enum Unmade {
     /// A cell has no mesh.
     Mesh(String),
-    /// Cells that a page cannot show.
-    Page(WebError),
-    /// Numbers that cannot be shown.
-    Values(String),
-    /// A report, synapses or points that cannot be shown.
-    Content(DrawError),
+    /// Options, and what a page cannot show.
+    Page(PageError),
     /// More than people send.
     Large(usize),
 }
@@ -85,7 +77,7 @@ impl Page {
     fn legends(&self) -> Vec<(&'static str, Vec<String>)> {
         let legends = self.made.legends.iter();
         legends
-            .map(|(by, entries)| (colors::name_of(*by), entries.clone()))
+            .map(|(by, entries)| (name_of(*by), entries.clone()))
             .collect()
     }
 
@@ -134,27 +126,25 @@ fn page(
     py: Python<'_>,
     cells: Vec<PyRef<'_, Cell>>,
     circuit: Option<GivenNodes<'_>>,
-    recipe: &Recipe,
-    keywords: Keywords,
+    keywords: &Bound<'_, PyDict>,
+    title: Option<String>,
     values: Option<GivenValues<'_>>,
     series: Option<GivenSeries<'_>>,
     force: bool,
 ) -> PyResult<Page> {
-    let colors = Colors::of(&keywords).map_err(|e| errors::option(py, &e))?;
+    let picture = draw_options(keywords)?.picture;
     let (own, _) = own_numbers(values, series)?;
     let mut shown = match circuit {
         Some((circuit, nodes)) => Shown::nodes(py, &circuit, nodes)?,
         None => Shown::alone(&cells),
     };
-    let options = recipe.0.generate.clone();
     let made = stoppable(py, None, &Stop::default(), move |stopped| {
-        let content = PageContent::new(keywords.content.iter().cloned());
-        let content = content.map_err(Unmade::Content)?;
-        shown.cut(&content)?;
+        let options = picture.shape.generate();
+        shown.cut(picture.colors.report.as_deref())?;
         let meshes = shown.meshes(&options, stopped)?;
-        let meshed = (&meshes[..], options.radius_factor);
         let unused = shown.unused_kinds(options.kinds.as_deref());
-        let mut page = Page::of(shown, meshed, &keywords, colors, own, &content)?;
+        let own = own.map(PageValues::Own);
+        let mut page = Page::of(shown, &meshes, (&picture, title.as_deref()), own)?;
         page.messages
             .extend(unused.map(|unused| format!("{unused}: check types=")));
         match page.made.html.len() {
@@ -168,72 +158,40 @@ fn page(
 impl Page {
     fn of(
         shown: Shown,
-        (meshes, radius_factor): (&[CoarseMesh], f64),
-        keywords: &Keywords,
-        colors: Colors,
-        own: Option<OwnNumbers>,
-        content: &PageContent,
+        meshes: &[CoarseMesh],
+        (picture, title): (&Picture, Option<&str>),
+        own: Option<PageValues>,
     ) -> Result<Self, Unmade> {
-        let cells = shown.page_cells(meshes, radius_factor);
-        let colored: Vec<_> = cells.iter().map(|page| page.cell).collect();
+        let host = Quiet::default();
+        let cells = shown.page_cells(meshes, picture.shape.factor());
         let nodes = shown.nodes_of();
-        let of = shown.circuit.as_ref().map(|of| (&**of, &nodes[..]));
-        let recording = match own {
-            Some(own) => Some(played(own, &colored, keywords.range)?),
-            None => {
-                let recording = content.recording(of, &colored, keywords.range);
-                recording.map_err(Unmade::Content)?
-            }
+        let content = PageContent {
+            cells: &cells,
+            circuit: shown.circuit.as_ref().map(|of| (&**of, &nodes[..])),
+            title,
         };
-        let scheme = ColorScheme {
-            palette: colors.palette,
-            own_colors: colors.own_colors.clone(),
-            background: None,
-            scale: colors.color_map.scale(),
-            range: keywords.range.filter(|_| recording.is_none()),
-        };
-        let names: Vec<&str> = colored.iter().map(|cell| cell.name).collect();
-        let title = keywords.title.clone();
-        let options = PageOptions {
-            title: title.unwrap_or_else(|| usual_title(&names)),
-            background: colors.background,
-            palette: colors.palette,
-            own_colors: colors.own_colors,
-            color_map: colors.color_map,
-            scheme: None,
-            least_width: (keywords.least_width)
-                .unwrap_or_else(|| Look::usual_least_width(cells.len())),
-        };
-        let markers = content.markers(of, &scheme).map_err(Unmade::Content)?;
-        let values = recording.as_ref();
-        let made = shared_page(&cells, &scheme, colors.first, values, &markers, &options);
+        let made = drawing::page(&content, picture, own, &host).map_err(Unmade::Page)?;
         Ok(Self {
-            made: made.map_err(Unmade::Page)?,
-            has_values: recording.is_some(),
-            times: recording
-                .map(|recording| recording.times)
-                .unwrap_or_default(),
-            messages: content.messages(),
+            made: made.page,
+            has_values: made.has_values,
+            times: made.times,
+            messages: host.take_messages(),
             placed: shown.placed,
             points: meshes.iter().map(traced).collect(),
         })
     }
 }
 
-/// Numbers as a page plays them; `range`: those at the ends of the scale, if they are not the least and the greatest.
-fn played(
-    own: OwnNumbers,
-    cells: &[coloring::Cell<'_>],
-    range: Option<[f32; 2]>,
-) -> Result<PageRecording, Unmade> {
-    match own {
-        OwnNumbers::Still(values) => Ok(PageRecording::still(cells, &values, range)),
-        OwnNumbers::OverTime(series) => {
-            let all: Vec<usize> = (0..cells.len()).collect();
-            let recording = Recording::of_series(series, cells, &all);
-            embed::page_recording(&recording, None, range, cells.len())
-                .map_err(|e| Unmade::Values(e.to_string()))
-        }
+/// The name of what colors tell.
+fn name_of(by: ColorBy) -> &'static str {
+    match by {
+        ColorBy::Type => "type",
+        ColorBy::Neurite => "neurite",
+        ColorBy::Section => "section",
+        ColorBy::BranchOrder => "order",
+        ColorBy::Radius => "radius",
+        ColorBy::PathDistance => "depth",
+        ColorBy::Neuron => "neuron",
     }
 }
 
@@ -251,9 +209,8 @@ impl Unmade {
     fn told(self, py: Python<'_>) -> PyErr {
         match self {
             Self::Mesh(message) => errors::mesh(py, &message),
-            Self::Values(message) => PyValueError::new_err(message),
-            Self::Content(error) => undrawn(py, &error),
-            Self::Page(WebError::Shader(fault)) => errors::bug(fault),
+            Self::Page(PageError::Draw(error)) => undrawn(py, &error),
+            Self::Page(PageError::Page(WebError::Shader(fault))) => errors::bug(fault),
             Self::Page(error) => PyValueError::new_err(error.to_string()),
             Self::Large(bytes) => {
                 let size = bytes as f64 / 1e6;

@@ -1,17 +1,18 @@
 //! The cells of a page: alone, or at their places in a circuit.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use neurotess::circuit::{self as circuits, Instance, NodeRef, soma_center};
-use neurotess::coloring::{self, with_middles};
+use neurotess::coloring::{self, cuts, with_middles};
+use neurotess::drawing::DrawError;
 use neurotess::generate::{GenerateOptions, generate_watched, unused_kinds};
 use neurotess::mesh::{CoarseMesh, Watch};
 use neurotess::morphology::{Morphology, NeuriteKind};
 use neurotess::render::Placement;
 use neurotess::web::PageCell;
-use neurotess_cli::embed::PageContent;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -112,13 +113,14 @@ impl Shown {
     ///
     /// # Errors
     /// The report is invalid, or of another circuit.
-    pub(super) fn cut(&mut self, content: &PageContent) -> Result<(), Unmade> {
-        let Some(circuit) = &self.circuit else {
+    pub(super) fn cut(&mut self, report: Option<&Path>) -> Result<(), Unmade> {
+        let (Some(circuit), Some(report)) = (&self.circuit, report) else {
             return Ok(());
         };
         let placed = self.placed.iter();
         let shown: Vec<_> = placed.filter_map(|p| Some((p.cell, p.node?.0))).collect();
-        let cuts = content.cuts(circuit, &shown).map_err(Unmade::Content)?;
+        let cuts = cuts(report, circuit, &shown);
+        let cuts = cuts.map_err(|e| Unmade::Page(DrawError::Failed(e.to_string()).into()))?;
         for (cell, compartments) in cuts {
             self.cells[cell] = Arc::new(with_middles(&self.cells[cell], &compartments));
         }

@@ -394,6 +394,14 @@ impl Surface {
     }
 }
 
+#[cfg(feature = "render")]
+impl Surface {
+    /// The mesh as pictures take it.
+    pub(crate) fn collected(&self, py: Python<'_>) -> PyResult<SurfaceMesh> {
+        self.with_own(py, Vec::new(), |slices| SurfaceMesh::collect(slices))
+    }
+}
+
 /// Numbers of one's own as Python has them: name, components, and an array of all in a row.
 type OwnArray = (String, usize, Py<PyAny>);
 

@@ -105,6 +105,21 @@ impl ReadError {
             | Self::Unsupported { at, .. } => *at,
         }
     }
+
+    /// The message with the file in front: `FILE:LINE: what: what to do`.
+    pub fn in_file(&self, file: &str) -> String {
+        let text = self.to_string();
+        match (self.place(), self) {
+            (FilePosition::Line(line), _) => {
+                let what = text.strip_prefix(&format!("line {line}: "));
+                format!("{file}:{line}: {}", what.unwrap_or(&text))
+            }
+            (_, Self::Io(e)) => {
+                format!("{file}: cannot be read ({e}): check the path and its permissions")
+            }
+            _ => format!("{file}: {}", text.strip_prefix("file: ").unwrap_or(&text)),
+        }
+    }
 }
 
 impl fmt::Display for FilePosition {

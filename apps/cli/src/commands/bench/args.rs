@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use neurotess::render::{DEFAULT_BUDGET, MAX_BUDGET};
 
-use crate::options::size::Size;
+use neurotess::options::words::Size;
 
 /// `neurotess bench`
 #[derive(Args, Debug)]

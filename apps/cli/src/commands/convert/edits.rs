@@ -8,7 +8,7 @@ use neurotess::morphology::smoothing::SmoothingLength;
 
 use super::spines::{self, SpinesArg};
 use crate::options::numbers::positive;
-use crate::options::types::Types;
+use neurotess::options::words::Types;
 
 /// Edits of the tracing.
 #[derive(Args, Clone, Debug, Default)]
@@ -126,7 +126,7 @@ impl EditArgs {
             edits.push(Edit::Cut { samples });
         }
         if !self.drop_types.is_empty() {
-            let types = self.drop_types.iter().flat_map(|types| &types.0);
+            let types = self.drop_types.iter().flat_map(Types::kinds);
             edits.push(Edit::DropTypes(types.copied().collect()));
         }
         edits.extend(self.within.map(|distance| Edit::Within { distance }));
@@ -163,7 +163,7 @@ impl EditArgs {
 }
 
 fn renamed(text: &str) -> Result<Renamed, String> {
-    let of = |word: &str| types(word).map(|types| types.0);
+    let of = |word: &str| types(word).map(|types| types.kinds().to_vec());
     let needed = "FROM=TO is needed, as in 5=2 or undefined=basal";
     let (from, to) = text.split_once('=').ok_or(needed)?;
     match of(to)?[..] {
@@ -178,7 +178,7 @@ fn renamed(text: &str) -> Result<Renamed, String> {
 /// Types that a word names, the soma's among them.
 fn types(word: &str) -> Result<Types, String> {
     match word.trim().to_ascii_lowercase().as_str() {
-        "soma" => Ok(Types(vec![NeuriteKind::SOMA])),
+        "soma" => Ok(Types::of_kinds(word, vec![NeuriteKind::SOMA])),
         other => other.parse(),
     }
 }
@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(renamed("dendrite=7").expect("types").from.len(), 2);
         assert_eq!(renamed("0=soma").expect("types").to, NeuriteKind::SOMA);
         assert_eq!(
-            types(" Soma").map(|types| types.0),
+            types(" Soma").map(|types| types.kinds().to_vec()),
             Ok(vec![NeuriteKind::SOMA])
         );
         for wrong in ["3", "3=", "=3", "branch=2", "2=dendrite"] {

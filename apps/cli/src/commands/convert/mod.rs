@@ -25,10 +25,10 @@ use crate::io::morphologies::{
 };
 use crate::io::output::{self, OutputError};
 use crate::io::targets;
-use crate::options::cells::CellArgs;
 use crate::report::{Entry, Failed, Failure, Reporter, usage};
 use edits::EditArgs;
 pub use in_memory::EditRecipe;
+use neurotess::options::groups::CellSelection;
 
 /// `neurotess convert`
 #[derive(Args, Debug)]
@@ -63,7 +63,7 @@ pub(crate) struct ConvertArgs {
     #[command(flatten)]
     pub(crate) edits: EditArgs,
     #[command(flatten)]
-    pub(crate) cells: CellArgs,
+    pub(crate) cells: CellSelection,
 }
 
 /// One object of the JSON list.

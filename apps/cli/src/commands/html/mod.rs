@@ -1,32 +1,25 @@
 //! `neurotess html`: cells as one HTML page that opens without a server.
 
 mod args;
-mod in_memory;
-mod markers;
-mod recording;
 mod values;
 
 use std::io::Write;
 
 use itertools::Itertools;
-use neurotess::circuit::NodeRef;
-use neurotess::coloring::{Cell, ColorScheme, OwnColors};
-use neurotess::output::write_into;
-use neurotess::render::{Look, Placement};
-use neurotess::web::{
-    MAX_PAGE_BYTES, PageCell, PageOptions, PageRecording, shared_page, usual_title,
-};
-use serde::Serialize;
-
-use crate::commands::render::{
-    CircuitInstances, ColorBy as CliColorBy, MeshedCell, RenderArgs, RenderScene, read_scene, stem,
+use neurotess::coloring::Cell;
+use neurotess::drawing::{
+    CircuitInstances, MeshedCell, PageContent, PageError, PageValues, Scene, page, stem,
     tell_unused_types,
 };
+use neurotess::options::words::ColorWhat;
+use neurotess::output::write_into;
+use neurotess::web::{MAX_PAGE_BYTES, PageCell};
+use serde::Serialize;
+
+use crate::commands::render::{read_scene, told};
 use crate::io::output;
-use crate::report::{Entry, Failed, Reporter, count, usage};
+use crate::report::{Failed, Reporter, count, usage};
 pub(crate) use args::HtmlArgs;
-pub use in_memory::PageContent;
-pub use recording::page_recording;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -42,31 +35,30 @@ struct Document {
 pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
     output::check(&args.out, args.force)?;
-    if args.color_by == Some(CliColorBy::Value) && args.report.is_none() && args.values.is_none() {
+    let colors = &args.colors;
+    if colors.color_by == Some(ColorWhat::Value) && colors.report.is_none() && args.values.is_none()
+    {
         return usage("--color-by value needs a --report or --values");
     }
-    let render = args.render_args();
-    let RenderScene {
+    let options = args.options();
+    let Scene {
         entries,
         placements,
         instances,
         ..
-    } = read_scene(&render, reporter)?;
-    let mut cells = Vec::new();
-    let mut failed = Vec::new();
-    for entry in entries {
-        match entry {
-            Entry::Done(cell) => cells.push(cell),
-            Entry::Failed(entry) => failed.push(entry),
-        }
-    }
-    tell_unused_types(cells.iter(), &render, reporter);
+    } = read_scene(&args.inputs, &options, reporter)?;
+    let (cells, failed): (Vec<MeshedCell>, Vec<_>) = entries.into_iter().partition_result();
+    let failed = failed.into_iter().map(|unread| Failed {
+        file: unread.file,
+        error: unread.error,
+    });
+    tell_unused_types(&cells.iter().collect::<Vec<_>>(), &options, reporter);
     let mut document = Document {
         out: args.out.display().to_string(),
         bytes: 0,
         points: 0,
         cells: Vec::new(),
-        failed,
+        failed: failed.collect(),
     };
     if placements.is_empty() {
         return reporter.document(&document);
@@ -75,15 +67,38 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
         Some(instances) => instances.names(),
         None => cells.iter().map(|cell| stem(&cell.file)).collect(),
     };
-    let made = Content {
-        args,
-        render: &render,
-        cells: &cells,
-        placements: &placements,
-        names: &names,
-        instances: instances.as_ref(),
-    }
-    .page(reporter)?;
+    let nodes = instances.as_ref().map(CircuitInstances::refs);
+    let nodes = nodes.unwrap_or_default();
+    let placed: Vec<PageCell<'_>> = placements
+        .iter()
+        .zip_eq(&names)
+        .map(|(&(cell, placement), name)| PageCell {
+            cell: Cell {
+                name,
+                morphology: &cells[cell].morphology,
+                mesh: &cells[cell].mesh,
+                radius_factor: options.picture.shape.factor(),
+            },
+            placement,
+        })
+        .collect();
+    let colored: Vec<Cell<'_>> = placed.iter().map(|page| page.cell).collect();
+    let values = match &args.values {
+        Some(table) => Some(values::read(table, colors.range, &colored)?),
+        None => None,
+    };
+    let content = PageContent {
+        cells: &placed,
+        circuit: instances.as_ref().map(|of| (&of.circuit, &nodes[..])),
+        title: args.title.as_deref(),
+    };
+    let values = values.map(PageValues::Played);
+    let made = page(&content, &options.picture, values, reporter).map_err(|e| match e {
+        PageError::Draw(e) => told(e),
+        // The message only: with its source, it would be printed twice.
+        other => anyhow::anyhow!("{other}"),
+    })?;
+    let made = made.page;
     let bytes = made.html.len();
     if bytes > MAX_PAGE_BYTES && !args.force {
         let size = size_text(bytes);
@@ -98,107 +113,6 @@ pub(crate) fn run(args: &HtmlArgs, reporter: &Reporter) -> anyhow::Result<()> {
     document.points = made.points;
     document.cells = names;
     reporter.document(&document)
-}
-
-/// What a page is made of.
-struct Content<'a> {
-    args: &'a HtmlArgs,
-    render: &'a RenderArgs,
-    cells: &'a [MeshedCell],
-    placements: &'a [(usize, Placement)],
-    names: &'a [String],
-    instances: Option<&'a CircuitInstances>,
-}
-
-impl Content<'_> {
-    fn page(&self, reporter: &Reporter) -> anyhow::Result<neurotess::web::Page> {
-        let cells = self.cells();
-        let scheme = self.scheme();
-        let nodes = self.instances.map(CircuitInstances::refs);
-        let nodes = nodes.unwrap_or_default();
-        let recording = self.recording(&cells, &nodes, reporter)?;
-        let page_cells: Vec<PageCell<'_>> = cells
-            .iter()
-            .zip_eq(self.placements)
-            .map(|(&cell, &(_, placement))| PageCell { cell, placement })
-            .collect();
-        let of = self.instances.map(|of| (&of.circuit, &nodes[..]));
-        let markers = markers::read(&self.args.markers, of, &scheme, reporter)?;
-        let made = shared_page(
-            &page_cells,
-            &scheme,
-            self.args.color_by.and_then(crate::commands::render::by),
-            recording.as_ref(),
-            &markers,
-            &self.options(),
-        );
-        // The message only: with its source, it would be printed twice.
-        made.map_err(|e| anyhow::anyhow!("{e}"))
-    }
-
-    fn cells(&self) -> Vec<Cell<'_>> {
-        let named = self.placements.iter().zip_eq(self.names);
-        named
-            .map(|(&(cell, _), name)| Cell {
-                name,
-                morphology: &self.cells[cell].morphology,
-                mesh: &self.cells[cell].mesh,
-                radius_factor: self.render.radius_factor(),
-            })
-            .collect()
-    }
-
-    fn recording(
-        &self,
-        cells: &[Cell<'_>],
-        nodes: &[NodeRef],
-        reporter: &Reporter,
-    ) -> anyhow::Result<Option<PageRecording>> {
-        let (args, range) = (self.args, self.args.range);
-        match (&args.report, &args.values, self.instances) {
-            (Some(report), _, Some(instances)) => {
-                let of = (&instances.circuit, nodes);
-                recording::read((report, args.time), of, cells, range, reporter).map(Some)
-            }
-            (_, Some(table), _) => values::read(table, range, cells).map(Some),
-            _ => Ok(None),
-        }
-    }
-
-    fn own_colors(&self) -> OwnColors {
-        self.render.own_colors()
-    }
-
-    fn scheme(&self) -> ColorScheme {
-        ColorScheme {
-            palette: self.render.base_palette(),
-            own_colors: self.own_colors(),
-            background: None,
-            scale: self.args.colormap.scale(),
-            range: self
-                .args
-                .range
-                .filter(|_| self.args.report.is_none() && self.args.values.is_none()),
-        }
-    }
-
-    fn options(&self) -> PageOptions {
-        let neurons = self.placements.len();
-        let least_width = self.args.least_width.map(|width| width as f32);
-        PageOptions {
-            title: self
-                .args
-                .title
-                .clone()
-                .unwrap_or_else(|| usual_title(self.names)),
-            background: self.args.background.map(|color| color.0),
-            palette: self.render.base_palette(),
-            own_colors: self.own_colors(),
-            color_map: self.args.colormap,
-            scheme: None,
-            least_width: least_width.unwrap_or_else(|| Look::usual_least_width(neurons)),
-        }
-    }
 }
 
 /// A number of bytes as people write it.

@@ -6,13 +6,13 @@ use clap::{Args, ValueEnum};
 use neurotess::generate::Smooth;
 use neurotess::mesh::{Format, Unit};
 
-use crate::options::cells::CellArgs;
 use crate::options::out::OutArgs;
-use crate::options::radius::RadiusArgs;
-use crate::options::rings::RingArgs;
 use crate::options::shard::Shard;
-use crate::options::soma::SomaArg;
-use crate::options::types::Types;
+use neurotess::options::groups::CellSelection;
+use neurotess::options::groups::MissingRadii;
+use neurotess::options::groups::Rings;
+use neurotess::options::words::Soma;
+use neurotess::options::words::Types;
 
 /// `neurotess mesh`
 #[derive(Args, Debug)]
@@ -117,15 +117,15 @@ pub(crate) struct MeshArgs {
     )]
     pub(crate) radius_factor: f64,
     #[command(flatten)]
-    pub(crate) radius: RadiusArgs,
+    pub(crate) radius: MissingRadii,
     /// A mesh that solvers take: --crossings separate --isotropic --max-aspect 2.6 --radii equal-area,
     /// or an error that says where it fails
     #[arg(long, help_heading = "Crossings")]
     pub(crate) simulation: bool,
     /// How the soma is made
-    #[arg(long, value_enum, default_value_t = SomaArg::Fem, value_name = "METHOD",
+    #[arg(long, value_enum, default_value_t = Soma::Fem, value_name = "METHOD",
           help_heading = "Soma")]
-    pub(crate) soma: SomaArg,
+    pub(crate) soma: Soma,
     /// Poisson's ratio ν of the soma's material, 0 ≤ ν < 0.5
     #[arg(
         long,
@@ -164,7 +164,7 @@ pub(crate) struct MeshArgs {
     )]
     pub(crate) soma_level: Option<i64>,
     #[command(flatten)]
-    pub(crate) rings: RingArgs,
+    pub(crate) rings: Rings,
     /// Smooth the noise of the tracing away: half-width (µm) of what each point is averaged over; auto:
     /// 1.5 radii; 0: none. Forks and ends stay
     #[arg(long, value_name = "LENGTH", value_parser = smooth, allow_negative_numbers = true)]
@@ -217,7 +217,7 @@ pub(crate) struct MeshArgs {
     #[arg(long)]
     pub(crate) strict: bool,
     #[command(flatten)]
-    pub(crate) cells: CellArgs,
+    pub(crate) cells: CellSelection,
 }
 
 impl MeshArgs {

@@ -150,7 +150,7 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
         CrossingsArg::Merge => Crossings::Merge,
     });
     named.simulation = args.simulation;
-    named.soma = Some(args.soma.method());
+    named.soma = Some(args.soma.into());
     named.poisson = Some(args.poisson);
     named.soma_keep = args.soma_keep.map(|keep| match keep {
         SomaKeepArg::Volume => SomaKeep::Volume,
@@ -165,8 +165,8 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
         RadiiArg::EqualPerimeter => Radii::EqualPerimeter,
     });
     named.radius_factor = Some(args.radius_factor);
-    named.radius = args.radius.radius;
-    named.min_radius = args.radius.min_radius;
+    named.radius = args.radius.radius.map(|radius| radius.0);
+    named.min_radius = args.radius.min_radius.map(|radius| radius.0);
     named.soma_sphere = args.soma_sphere.map(|sphere| match sphere {
         SphereArg::Octahedron => SphereKind::Octahedron,
         SphereArg::Cube => SphereKind::Cube,
@@ -174,7 +174,7 @@ fn named(args: &MeshArgs) -> Result<NamedOptions, OptionsError> {
     let rings = args.rings.positions().into_iter();
     named.ring = rings.map(|(index, at)| (index + 1, at)).collect();
     named.smooth = args.smooth;
-    let kinds = args.types.iter().flat_map(|types| types.0.iter().copied());
+    let kinds = args.types.iter().flat_map(|types| types.kinds().to_vec());
     named.types = (!args.types.is_empty()).then(|| kinds.collect());
     named.quads = args.quads;
     Ok(named)

@@ -1,125 +1,86 @@
 //! `neurotess render`: pictures of cells and circuits, without a window.
 //!
 //! ```text
-//! arguments ─read, mesh─▶ cells, placements ─▶ cameras, colors, source ─draw─▶ bands ─▶ PNG, stats
+//! arguments ─read, mesh─▶ a scene ─▶ a drawing ─draw─▶ bands ─▶ PNG, stats
 //! ```
 
 mod args;
-mod bounds;
-mod cameras;
-mod cells;
-mod checks;
-mod circuit_instances;
-mod color_check;
-mod coloring;
-mod draw;
-mod film;
-mod in_memory;
-mod job;
-pub(crate) mod markers;
-mod meshes;
-mod painter;
-mod palette;
-mod scene;
+mod files;
+mod host;
 mod session;
-mod shown;
 mod stats;
-mod times;
-mod values;
 
 use std::io;
 
-use neurotess::coloring::MarkerSet;
+use neurotess::drawing::{
+    DrawError, DrawOptions, Drawing, OwnData, Scene, open, read_circuit, read_files,
+};
 use neurotess::output::write_into;
 
+use crate::io::circuits::partition;
+use crate::io::inputs::Inputs;
+use crate::io::morphologies::MORPHOLOGIES;
 use crate::io::output;
-use crate::report::{Entry, Reporter, usage};
+use crate::report::{Progress, Reporter, Usage, count, usage};
 pub(crate) use args::RenderArgs;
-pub(crate) use cells::MeshedCell;
-pub use in_memory::{DrawError, Drawing, DrawingColors, DrawingInput, Picked};
-use job::RenderJob;
-use meshes::SceneMeshes;
-pub use painter::{Device, Open};
-pub use palette::palette;
-pub(crate) use scene::RenderScene;
-use stats::{Stage, Stages};
-// What pages share.
-#[cfg(feature = "gpu")]
-pub(crate) use {
-    args::{ColorBy, color_maps, range},
-    circuit_instances::CircuitInstances,
-    coloring::{by, stem, tell_unused_types},
-    palette::{PaletteArg, PaletteParser, SetColor},
-    scene::read as read_scene,
-    times::times,
-    values::RgbArg,
-};
+use stats::{Document, InputEntry, Stage, Stages, Stats};
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
-    let files = checks::files(args)?;
-    shown::mode(args)?;
+    let options = args.options().map_err(told)?;
+    let picture = options.picture.clone();
+    let files = files::names(&args.out, &picture)?;
+    picture.check().map_err(|e| told(e.into()))?;
     for file in files.iter().chain(&args.stats) {
         output::check(file, args.force)?;
     }
     if let [path] = &args.inputs[..]
         && session::is_session(path)
     {
-        return session::draw(path, &files, args, reporter);
+        return session::draw(path, &files, (args, &options), reporter);
     }
-    if args.saved_view.is_some() {
+    if picture.camera.saved_view.is_some() {
         return usage("--saved-view is of a session: give the session's file");
     }
-    checks::check_value(args)?;
+    picture.check_values().map_err(|e| told(e.into()))?;
     let mut stages = Stages::begin();
-    let RenderScene {
-        entries,
-        placements,
-        instances,
-        cache,
-    } = scene::read(args, reporter)?;
-    let meshes = SceneMeshes::read(&args.meshes, reporter)?;
+    let mut scene = read_scene(&args.inputs, &options, reporter)?;
     stages.end(Stage::Read);
-    let cells: Vec<&MeshedCell> = entries
-        .iter()
-        .filter_map(|entry| match entry {
-            Entry::Done(cell) => Some(cell),
-            Entry::Failed(_) => None,
-        })
-        .collect();
-    if placements.is_empty() {
-        return reporter.document(&stats::Document::new(&entries, &[], None));
+    let inputs: Vec<InputEntry> = scene.entries.iter().map(Into::into).collect();
+    if scene.placements.is_empty() {
+        return reporter.document(&Document::new(inputs, &[], None));
     }
-    let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
-    let shown_by = (instances.as_ref(), &of_cells[..]);
-    let mut colored = coloring::of_pictures(&cells, shown_by, args, None, reporter)?;
-    colored.add_meshes(&meshes, None, args)?;
-    let mut spheres = bounds::spheres(&cells, &placements);
-    spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
-    let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();
-    spheres.extend(meshes.fitted());
-    let cameras = cameras::cameras(args, &spheres)?;
-    stages.end(Stage::Frame);
-    let (overlay, cameras) = draw::overlay(args, &colored, cameras, &spheres);
-    let job = RenderJob {
-        args,
-        cells: &cells,
-        placements: &placements,
-        colored: &colored,
-        cameras: &cameras,
-        #[cfg(feature = "gpu")]
-        spheres: &spheres,
-        around: &around,
-        overlay: &overlay,
-        files: &files,
-    };
-    stages.end(Stage::Frame);
-    let mut stats = draw::draw(&job, meshes, &mut stages, reporter)?;
+    let cache = scene.cache.take();
+    let drawing = Drawing::of_scene(scene, options, OwnData::default(), &open, reporter);
+    let mut drawing = drawing.map_err(told)?;
+    stages.of_drawing(drawing.seconds());
+    let ([name, _], software) = drawing.painter();
+    if software && drawing.by_adapter() {
+        reporter.note(&format!("drawn by the processor: {name}"));
+    }
+    let mut stats = Stats::new(&drawing);
+    let progress = Progress::new(reporter, files.len(), "pictures");
+    for (number, file) in files.iter().enumerate() {
+        let cost = files::write(file, args, &picture, |take| drawing.paint(number, take));
+        let cost = cost.map_err(told)?;
+        stats.film = drawing.film();
+        // Every picture of a film shows the same surface.
+        let same = stats.film.is_some() && number > 0;
+        let counted = (!same).then(|| drawing.counted(number)).transpose();
+        stats.add(&cost, counted.map_err(told)?);
+        let left_out = [stats.lowered(), stats.coarsened(), stats.thinned()];
+        for left_out in left_out.iter().flatten() {
+            reporter.warning(left_out);
+        }
+        progress.done();
+    }
+    drop(progress);
+    reporter.note(&count(files.len(), "picture"));
     stages.end(Stage::Draw);
     stats.took(stages);
     stats.cache = cache.map(Into::into);
-    stats.colors = colored.closest.as_ref().map(Into::into);
+    stats.colors = drawing.closest_colors().map(Into::into);
     if let Some(path) = &args.stats {
         let output = output::begin(path, args.force)?;
         write_into(output, path, |to| {
@@ -129,5 +90,37 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     for file in &files {
         reporter.result(&format!("{}: {}", file.display(), stats.line()));
     }
-    reporter.document(&stats::Document::new(&entries, &files, Some(&stats)))
+    reporter.document(&Document::new(inputs, &files, Some(&stats)))
+}
+
+/// Reads and meshes all inputs: tracings, or one circuit.
+///
+/// # Errors
+/// Wrong usage: a circuit beside other inputs, or a selection of cells without a circuit.
+pub(crate) fn read_scene(
+    inputs: &[std::path::PathBuf],
+    options: &DrawOptions,
+    reporter: &Reporter,
+) -> anyhow::Result<Scene> {
+    let (circuits, others) = partition(inputs);
+    let read = match &circuits[..] {
+        [path] if others.is_empty() => read_circuit(path, options, reporter),
+        [] => {
+            let inputs = Inputs::find(inputs, &MORPHOLOGIES);
+            inputs.tell(reporter);
+            let files = inputs.files.into_iter().map(|input| input.path);
+            read_files(&files.collect::<Vec<_>>(), options, reporter)
+        }
+        _ => return usage("a circuit is drawn alone: leave out the other inputs"),
+    };
+    read.map_err(told)
+}
+
+/// Options that are wrong are wrong usage.
+pub(crate) fn told(error: DrawError) -> anyhow::Error {
+    match error {
+        DrawError::Option(wrong) => Usage(wrong.to_string()).into(),
+        DrawError::Output(fault) => fault.into(),
+        other => anyhow::anyhow!("{other}"),
+    }
 }

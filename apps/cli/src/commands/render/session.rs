@@ -2,9 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use neurotess::drawing::DrawOptions;
+
 use super::args::RenderArgs;
 #[cfg(feature = "view")]
-use super::{painter, stats};
+use neurotess::drawing::{open, wanted};
+
+#[cfg(feature = "view")]
+use super::stats::Document;
 #[cfg(feature = "view")]
 use crate::report::{Failure, count};
 use crate::report::{Reporter, usage};
@@ -15,7 +20,7 @@ use crate::report::{Reporter, usage};
 pub(super) fn draw(
     session: &Path,
     files: &[PathBuf],
-    args: &RenderArgs,
+    (args, options): (&RenderArgs, &DrawOptions),
     reporter: &Reporter,
 ) -> anyhow::Result<()> {
     let [out] = files else {
@@ -23,17 +28,17 @@ pub(super) fn draw(
     };
     let picture = neurotess_viewer::save::PictureFile {
         out: out.clone(),
-        size: args.size.0,
-        samples: args.samples,
-        transparent: args.transparent,
+        size: options.picture.look.size.0,
+        samples: options.picture.look.samples.0,
+        transparent: options.picture.look.transparent,
         replace: args.force,
     };
-    let wanted = painter::wanted(args)?;
+    let wanted = wanted(options).map_err(super::told)?;
     let drawn = neurotess_viewer::draw_session(
         session,
         &picture,
-        args.saved_view.as_deref(),
-        &|patches| wanted.device(patches, &painter::open),
+        options.picture.camera.saved_view.as_deref(),
+        &|patches| wanted.device(patches, &open),
         args.cache.no_cache,
     );
     let drawn = drawn.map_err(anyhow::Error::msg)?;
@@ -46,7 +51,7 @@ pub(super) fn draw(
         count(drawn.neurons, "neuron"),
         session.display()
     ));
-    reporter.document(&stats::Document::new(&[], files, None))
+    reporter.document(&Document::new(Vec::new(), files, None))
 }
 
 /// Reports that this build cannot draw sessions.
@@ -54,7 +59,7 @@ pub(super) fn draw(
 pub(super) fn draw(
     session: &Path,
     _files: &[PathBuf],
-    _args: &RenderArgs,
+    _asked: (&RenderArgs, &DrawOptions),
     _reporter: &Reporter,
 ) -> anyhow::Result<()> {
     usage(format!(

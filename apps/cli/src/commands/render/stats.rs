@@ -7,11 +7,13 @@ use std::time::Instant;
 use neurotess::cache::Summary;
 use serde::Serialize;
 
-use super::cells::MeshedCell;
-use super::color_check::ColorStats;
-use super::film::FilmStats;
-use super::painter::{BudgetStats, Cost, Painter, SourceStats, StreamStats};
-use crate::report::{Entry, Failed};
+use neurotess::coloring::ClosestColors;
+use neurotess::drawing::{
+    BudgetStats, Cost, Drawing, DrawingSeconds, FilmStats, MeshedCell, SourceStats, StreamStats,
+    Unread,
+};
+
+use crate::report::Failed;
 
 /// The documented JSON object; times are those of the last picture.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -74,13 +76,18 @@ pub(crate) struct Stages {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stage {
     Read,
-    Frame,
-    Adapter,
-    Upload,
     Draw,
 }
 
 impl Stages {
+    /// Those of what was made to draw with.
+    pub(crate) fn of_drawing(&mut self, seconds: DrawingSeconds) {
+        self.frame = seconds.frame;
+        self.adapter = seconds.adapter;
+        self.upload = seconds.upload;
+        self.began = Some(Instant::now());
+    }
+
     /// Starts the clock.
     pub(crate) fn begin() -> Self {
         Self {
@@ -96,11 +103,30 @@ impl Stages {
         self.began = Some(now);
         *match stage {
             Stage::Read => &mut self.read,
-            Stage::Frame => &mut self.frame,
-            Stage::Adapter => &mut self.adapter,
-            Stage::Upload => &mut self.upload,
             Stage::Draw => &mut self.draw,
         } += seconds;
+    }
+}
+
+/// The two colors of the legend that are closest to one another.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ColorStats {
+    closest: [String; 2],
+    vision: &'static str,
+    /// How far they are apart (OKLab).
+    difference: f32,
+    /// Pairs that look alike.
+    alike: usize,
+}
+
+impl From<&ClosestColors> for ColorStats {
+    fn from(colors: &ClosestColors) -> Self {
+        Self {
+            closest: colors.names.clone(),
+            vision: colors.vision.name(),
+            difference: colors.difference,
+            alike: colors.alike,
+        }
     }
 }
 
@@ -152,21 +178,32 @@ struct FrameTime {
 
 impl Stats {
     /// Statistics before the first picture.
-    pub(crate) fn new(painter: &Painter, neurons: usize) -> Self {
-        let [adapter, backend] = painter.name.clone();
+    pub(crate) fn new(drawing: &Drawing) -> Self {
+        let ([adapter, backend], software) = drawing.painter();
         Self {
-            adapter,
-            backend,
-            software: painter.software,
-            neurons,
+            adapter: adapter.to_owned(),
+            backend: backend.to_owned(),
+            software,
+            neurons: drawing.neurons(),
             ..Self::default()
         }
     }
 
-    /// Adds a picture.
-    pub(crate) fn add(&mut self, cost: &Cost, made: SourceStats) {
+    /// Adds a picture, and what it draws, if that is not what the one before draws.
+    pub(crate) fn add(&mut self, cost: &Cost, made: Option<SourceStats>) {
         self.pictures += 1;
         self.tiles = cost.tiles;
+        if let Some(made) = made {
+            self.add_source(made);
+        }
+        self.gpu_bytes.insert("targets", cost.target_bytes);
+        self.frame_ms = FrameTime {
+            cpu: cost.cpu_ms,
+            gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
+        };
+    }
+
+    fn add_source(&mut self, made: SourceStats) {
         self.patches = made.patches;
         self.patches_drawn = made.patches_drawn;
         self.vertices = made.vertices;
@@ -183,11 +220,6 @@ impl Stats {
         self.meshes = made
             .meshes
             .map(|[count, triangles]| MeshStats { count, triangles });
-        self.gpu_bytes.insert("targets", cost.target_bytes);
-        self.frame_ms = FrameTime {
-            cpu: cost.cpu_ms,
-            gpu: cost.gpu_ms.as_ref().map(|ms| ms.iter().copied().collect()),
-        };
     }
 
     /// A message about what was left out or drawn with reduced quality.
@@ -258,31 +290,42 @@ fn peak_bytes() -> Option<u64> {
 #[derive(Serialize)]
 pub(crate) struct Document<'a> {
     files: Vec<String>,
-    inputs: Vec<Input<'a>>,
+    inputs: Vec<InputEntry>,
     #[serde(flatten)]
     stats: Option<&'a Stats>,
 }
 
+/// An input: its file, and why it failed, if it did.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Input<'a> {
-    Done { file: &'a str },
-    Failed(&'a Failed),
+pub(crate) enum InputEntry {
+    Done { file: String },
+    Failed(Failed),
+}
+
+impl From<&Result<MeshedCell, Unread>> for InputEntry {
+    fn from(entry: &Result<MeshedCell, Unread>) -> Self {
+        match entry {
+            Ok(cell) => Self::Done {
+                file: cell.file.clone(),
+            },
+            Err(unread) => Self::Failed(Failed {
+                file: unread.file.clone(),
+                error: unread.error.clone(),
+            }),
+        }
+    }
 }
 
 impl<'a> Document<'a> {
     pub(crate) fn new(
-        entries: &'a [Entry<MeshedCell>],
+        inputs: Vec<InputEntry>,
         files: &[PathBuf],
         stats: Option<&'a Stats>,
     ) -> Self {
-        let input = |entry: &'a Entry<MeshedCell>| match entry {
-            Entry::Done(cell) => Input::Done { file: &cell.file },
-            Entry::Failed(failed) => Input::Failed(failed),
-        };
         Self {
             files: files.iter().map(|f| f.display().to_string()).collect(),
-            inputs: entries.iter().map(input).collect(),
+            inputs,
             stats,
         }
     }

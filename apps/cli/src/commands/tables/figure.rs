@@ -11,8 +11,8 @@ use neurotess::plot::{Axis, Data, Plot, Series};
 
 use super::places::{Chosen, Places, frames};
 use crate::io::output;
-use crate::options::time::Time;
 use crate::report::usage;
+use neurotess::options::words::Time;
 
 /// Size of the figure (pixels).
 const SIZE: [u32; 2] = [900, 480];

@@ -11,8 +11,8 @@ use serde::Serialize;
 use crate::io::circuits;
 use crate::io::output::{is_standard, reserve_standard};
 use crate::io::table::{self, Rows, TableArgs, cell, named_from};
-use crate::options::cells::CellArgs;
 use crate::report::{Failure, Reporter, usage};
+use neurotess::options::groups::CellSelection;
 
 /// `neurotess nodes`
 #[derive(Args, Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct NodesArgs {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     #[command(flatten)]
-    cells: CellArgs,
+    cells: CellSelection,
 }
 
 /// The JSON document.
@@ -46,10 +46,7 @@ pub(crate) fn run(args: &NodesArgs, reporter: &Reporter) -> anyhow::Result<()> {
     reserve_standard(&args.table.csv, reporter)?;
     let circuit =
         circuits::open(&args.circuit, reporter).map_err(|Failure(why)| anyhow::anyhow!(why))?;
-    let nodes = args
-        .cells
-        .select(&circuit)
-        .map_err(|Failure(why)| anyhow::anyhow!(why))?;
+    let nodes = args.cells.select(&circuit)?;
     let attributes = attributes(&circuit, args.columns.as_deref())?;
     let columns = table::write(&args.table, |rows| {
         fill(rows, &args.table.csv, &circuit, &nodes, &attributes)

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use neurotess::circuit::{Circuit, NodeRef, Report, ReportPopulation, TimeAxis};
 
-use crate::options::time::Time;
+use neurotess::options::words::Time;
 
 /// A population of a report, and the indices of its nodes that are selected.
 pub(super) type Chosen<'a> = (&'a ReportPopulation, Vec<usize>);

@@ -15,9 +15,9 @@ use super::places::{Chosen, NodePlaces, Places, chosen, frames, mean};
 use crate::io::circuits;
 use crate::io::output::{is_standard, reserve_standard};
 use crate::io::table::{self, Rows, TableArgs};
-use crate::options::cells::CellArgs;
-use crate::options::time::Time;
 use crate::report::{Failure, Reporter, usage};
+use neurotess::options::groups::CellSelection;
+use neurotess::options::words::Time;
 
 /// `neurotess report`
 #[derive(Args, Debug)]
@@ -44,7 +44,7 @@ pub(crate) struct ReportArgs {
     #[command(flatten)]
     table: TableArgs,
     #[command(flatten)]
-    cells: CellArgs,
+    cells: CellSelection,
 }
 
 /// What has a row at each time.
@@ -72,10 +72,7 @@ pub(crate) fn run(args: &ReportArgs, reporter: &Reporter) -> anyhow::Result<()> 
     reserve_standard(out, reporter)?;
     let circuit =
         circuits::open(&args.circuit, reporter).map_err(|Failure(why)| anyhow::anyhow!(why))?;
-    let selected = args
-        .cells
-        .select(&circuit)
-        .map_err(|Failure(why)| anyhow::anyhow!(why))?;
+    let selected = args.cells.select(&circuit)?;
     let selected: BTreeSet<NodeRef> = selected.into_iter().collect();
     let path = path_of(&circuit, args.report.as_deref())?;
     let opened = circuit.open_recording(&path)?;

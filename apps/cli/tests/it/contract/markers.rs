@@ -103,7 +103,8 @@ fn synapses_that_only_name_sections_are_shown_too() {
 #[neurotess_testing::test]
 fn shapes_are_points_spheres_and_contacts() {
     let work = circuit();
-    let close = "--nodes 3 --synapses --marker-size 8 --size 320x240 --samples 1 --no-legend";
+    let close =
+        "--nodes 3 --synapses --marker-size 8 --size 320x240 --samples 1 --no-legend --no-recipe";
     let picture = |shape: &str| {
         work.run(&format!(
             "render c -o {shape}.png --marker-shape {shape} {close} --force"

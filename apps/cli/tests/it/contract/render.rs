@@ -532,13 +532,14 @@ fn axes_are_drawn_where_there_is_room() {
 
 #[neurotess_testing::test]
 fn the_library_draws_the_same_picture() {
-    use neurotess::recipe::{DrawOptions, MeshOptions};
+    use neurotess::options::words::{Fit, Size};
+    use neurotess::recipe::MeshOptions;
     let (work, _) = drawn("--scale-bar");
     let tracing = neurotess::read(work.path("cell.swc")).expect("a cell");
     let cell = neurotess::mesh(&tracing, &MeshOptions::default()).expect("meshed");
-    let options = DrawOptions::default()
-        .with_size([120, 90])
-        .with_scale_bar(0.0);
+    let mut options = neurotess::options::Picture::default();
+    options.look.size = Size([120, 90]);
+    options.look.scale_bar = Some(Fit::Auto);
     let picture = neurotess::draw(&[&cell], &options).expect("drawn");
     picture.save(work.path("ours.png")).expect("saved");
     let [theirs, ours] = ["cell.png", "ours.png"].map(|name| Picture::read(&work, name));

@@ -1,0 +1,404 @@
+//! Pictures of cells and circuits: a scene, with all that is needed to draw it once or often.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use neurotess_circuit::NodeRef;
+use neurotess_color::{ClosestColors, MarkerSet};
+use neurotess_morphology::Morphology;
+use neurotess_options::words::Size;
+use neurotess_picture::overlay::Overlay;
+use neurotess_picture::{
+    BoundingSphere, Camera, Image, PictureOptions, Placement, Viewpoint, Watch,
+};
+use neurotess_recipe::memory;
+
+use crate::cameras;
+use crate::colors::{self, PictureColors};
+use crate::error::DrawError;
+use crate::film::{FilmStats, FixedFilm};
+use crate::host::Host;
+use crate::job::Job;
+use crate::meshed::MeshedCell;
+use crate::options::{DrawOptions, OwnData};
+use crate::overlay::{overlay, tell_lowered};
+use crate::painter::{Cost, Open, Painter, SourceStats, Take};
+use crate::png::recipe_of;
+use crate::scene::meshes::SceneMeshes;
+use crate::scene::{CircuitInstances, Scene, bounds, of_memory, read_circuit};
+use crate::shown::Shown;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub enum DrawingInput<'a> {
+    /// Cells with their names, in their own coordinates.
+    Cells(&'a [(&'a str, &'a Morphology)]),
+    /// A circuit, of which the options select cells; only of these, if some are listed.
+    Circuit(&'a Path, Option<&'a [NodeRef]>),
+}
+
+/// Cells to be drawn once or often.
+pub struct Drawing {
+    asked: Box<DrawOptions>,
+    pub(crate) cells: Vec<MeshedCell>,
+    pub(crate) placements: Vec<(usize, Placement)>,
+    pub(crate) instances: Option<CircuitInstances>,
+    /// What the cameras of the options fit.
+    spheres: Vec<BoundingSphere>,
+    /// What holds everything, for near planes.
+    around: Vec<BoundingSphere>,
+    colored: PictureColors,
+    cameras: Vec<Camera>,
+    overlay: Overlay,
+    painter: Painter,
+    /// Of a series of times from a fixed camera: drawn with the first of its pictures.
+    film: Option<FixedFilm>,
+    seconds: DrawingSeconds,
+}
+
+/// How long it took until the first picture could be drawn (s).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DrawingSeconds {
+    /// Cameras, colors, legend.
+    pub frame: f64,
+    /// Opening the adapter.
+    pub adapter: f64,
+    /// Making what is drawn from, and uploading it.
+    pub upload: f64,
+}
+
+impl Drawing {
+    /// Reads and meshes what is to be drawn, and uploads it if an adapter draws, which `open` opens. Numbers of `own` go
+    /// before what the options color by. Ends soon after another thread stops the host.
+    ///
+    /// # Errors
+    /// Wrong options, inputs that fail, or a device that does.
+    pub fn new(
+        input: DrawingInput<'_>,
+        mut asked: DrawOptions,
+        own: OwnData,
+        open: Open<'_>,
+        host: &dyn Host,
+    ) -> Result<Self, DrawError> {
+        if let DrawingInput::Circuit(_, Some(nodes)) = input {
+            asked.picture.cells.listed = Some(nodes.to_vec());
+        }
+        asked.picture.check()?;
+        let scene = match input {
+            DrawingInput::Cells(cells) => of_memory(cells, &asked, host)?,
+            DrawingInput::Circuit(path, _) => read_circuit(path, &asked, host)?,
+        };
+        Self::of_scene(scene, asked, own, open, host)
+    }
+
+    /// Of a scene that is meshed.
+    ///
+    /// # Errors
+    /// Wrong options, a report or a mesh that is invalid, or a device that fails.
+    pub fn of_scene(
+        scene: Scene,
+        asked: DrawOptions,
+        own: OwnData,
+        open: Open<'_>,
+        host: &dyn Host,
+    ) -> Result<Self, DrawError> {
+        let mut clock = Clock(Instant::now());
+        let asked = Box::new(asked);
+        let picture = &asked.picture;
+        picture.check()?;
+        if own.numbers.is_none() && own.mesh_values.is_none() {
+            picture.check_values()?;
+        }
+        let Scene {
+            entries,
+            placements,
+            instances,
+            ..
+        } = scene;
+        let cells: Vec<MeshedCell> = entries.into_iter().flatten().collect();
+        if host.stopped().load(Ordering::Relaxed) {
+            return Err(DrawError::Stopped);
+        }
+        if placements.is_empty() && picture.meshes.mesh.is_empty() {
+            return Err(DrawError::Failed("there is no cell to draw".into()));
+        }
+        let shown: Vec<&MeshedCell> = cells.iter().collect();
+        let of_cells: Vec<usize> = placements.iter().map(|&(cell, _)| cell).collect();
+        let OwnData {
+            numbers,
+            surfaces,
+            mesh_values,
+        } = own;
+        let still = matches!(numbers, Some(neurotess_color::OwnNumbers::Still(_)));
+        let meshes = SceneMeshes::read(&picture.meshes.mesh, surfaces, host)?;
+        let shown_by = (instances.as_ref(), &of_cells[..]);
+        let mut colored = colors::of_pictures(&shown, shown_by, &asked, numbers, host)?;
+        let of_vertices = mesh_values.as_ref().map(|values| (values, still));
+        colored.add_meshes(&meshes, of_vertices, &asked)?;
+        let mut spheres = bounds::spheres(&shown, &placements);
+        spheres.extend(colored.markers.as_ref().and_then(MarkerSet::bounds));
+        let around: Vec<_> = spheres.iter().copied().chain(meshes.points()).collect();
+        spheres.extend(meshes.fitted());
+        let cameras = cameras::cameras(picture, &spheres)?;
+        let (overlay, cameras) = overlay(&asked, &colored, cameras, &spheres);
+        let options = picture.drawn(colored.least_width());
+        tell_lowered(&options, picture.look.samples.0, &overlay, host);
+        let frame = clock.lap();
+        let job = Job {
+            asked: &asked,
+            cells: &shown,
+            placements: &placements,
+            colored: &colored,
+            cameras: &cameras,
+            #[cfg(feature = "gpu")]
+            spheres: &spheres,
+        };
+        let device = Painter::device(open, &job)?;
+        let adapter = clock.lap();
+        let painter = Painter::new(device, &options, &job, meshes)?;
+        let seconds = DrawingSeconds {
+            frame,
+            adapter,
+            upload: clock.lap(),
+        };
+        drop(shown);
+        Ok(Self {
+            asked,
+            cells,
+            placements,
+            instances,
+            spheres,
+            around,
+            colored,
+            cameras,
+            overlay,
+            painter,
+            film: None,
+            seconds,
+        })
+    }
+
+    /// Number of pictures that the options ask for.
+    pub fn pictures(&self) -> usize {
+        self.cameras.len()
+    }
+
+    /// Whether a graphics adapter draws.
+    pub fn by_adapter(&self) -> bool {
+        self.painter.is_adapter()
+    }
+
+    /// What draws: its name, its interface, and whether it is a processor.
+    pub fn painter(&self) -> ([&str; 2], bool) {
+        let [name, interface] = &self.painter.name;
+        ([name, interface], self.painter.software)
+    }
+
+    /// What was asked for.
+    pub fn options(&self) -> &DrawOptions {
+        &self.asked
+    }
+
+    /// How the pictures are made, as PNG files tell it under [`PNG_KEYWORD`](crate::PNG_KEYWORD).
+    pub fn recipe(&self) -> String {
+        recipe_of(&self.asked.picture)
+    }
+
+    /// Number of neurons in the pictures.
+    pub fn neurons(&self) -> usize {
+        self.placements.len()
+    }
+
+    /// How long it took until the first picture could be drawn.
+    pub fn seconds(&self) -> DrawingSeconds {
+        self.seconds
+    }
+
+    /// The colors of the legend that are closest to one another.
+    pub fn closest_colors(&self) -> Option<&ClosestColors> {
+        self.colored.closest.as_ref()
+    }
+
+    /// What a film holds and reads, if the pictures are one.
+    pub fn film(&self) -> Option<FilmStats> {
+        self.film.as_ref().map(FixedFilm::stats)
+    }
+
+    /// The camera of one of the pictures.
+    pub fn camera(&self, picture: usize) -> Option<Camera> {
+        self.cameras.get(picture).copied()
+    }
+
+    /// Draws one of the pictures, with legend and scale bar. Ends soon after another thread sets `stopped`.
+    ///
+    /// # Errors
+    /// The device or a report fails, or the picture was stopped.
+    pub fn draw(&mut self, picture: usize, stopped: &Arc<AtomicBool>) -> Result<Image, DrawError> {
+        self.stoppable(stopped, |drawing| {
+            let mut whole = Whole::new(drawing.asked.picture.look.size.0)?;
+            drawing.paint(picture, &mut |_, band| whole.take(&band))?;
+            Ok(whole.image)
+        })
+    }
+
+    /// Draws one of the pictures, with legend and scale bar; `take` gets its bands from the top.
+    ///
+    /// # Errors
+    /// The device or a report fails, or `take` does.
+    pub fn paint(&mut self, picture: usize, take: Take<'_>) -> Result<Cost, DrawError> {
+        let Some(camera) = self.camera(picture) else {
+            return Err(DrawError::Failed("there is no such picture".into()));
+        };
+        let options = self.asked.picture.drawn(self.colored.least_width());
+        if self.film.is_none() {
+            let cells: Vec<&MeshedCell> = self.cells.iter().collect();
+            let shown = shown(&self.asked, &cells, &self.placements, &self.colored);
+            let cameras = (&self.cameras[..], &self.around[..]);
+            self.film = FixedFilm::new(&mut self.painter, &shown, cameras, &options)?;
+        }
+        let Some(film) = &mut self.film else {
+            return self.paint_from(picture, camera, &options, take);
+        };
+        let (mut image, cost) = film.picture(&self.colored, picture)?;
+        let legend = self.colored.legend(picture);
+        let legend = (!self.asked.picture.look.no_legend).then_some(&legend);
+        self.overlay.again(legend, &camera).lay_on(0, &mut image);
+        take(0, image)?;
+        Ok(cost)
+    }
+
+    /// Draws from anywhere, at another size and number of samples, with the colors of one of the pictures. Ends
+    /// soon after another thread sets `stopped`.
+    ///
+    /// # Errors
+    /// The device or a report fails, or the picture was stopped.
+    pub fn draw_from(
+        &mut self,
+        picture: usize,
+        camera: Camera,
+        (size, samples): ([u32; 2], u32),
+        stopped: &Arc<AtomicBool>,
+    ) -> Result<Image, DrawError> {
+        if self.asked.picture.look.size.0 != size {
+            self.asked.picture.look.size = Size(size);
+            self.film = None;
+            self.colored.set_widths(&self.asked);
+            let first = vec![camera];
+            (self.overlay, _) = overlay(&self.asked, &self.colored, first, &self.spheres);
+        }
+        let options = PictureOptions {
+            samples,
+            ..self.asked.picture.drawn(self.colored.least_width())
+        };
+        self.stoppable(stopped, |drawing| {
+            let mut whole = Whole::new(size)?;
+            drawing.paint_from(picture, camera, &options, &mut |_, band| whole.take(&band))?;
+            Ok(whole.image)
+        })
+    }
+
+    /// Draws with a renderer that another thread can stop.
+    fn stoppable(
+        &mut self,
+        stopped: &Arc<AtomicBool>,
+        draw: impl FnOnce(&mut Self) -> Result<Image, DrawError>,
+    ) -> Result<Image, DrawError> {
+        self.painter.set_watch(Watch {
+            stopped: Arc::clone(stopped),
+            ..Watch::default()
+        });
+        let drawn = draw(self);
+        if drawn.is_err() {
+            // What was stopped in the middle of a tile has its buffers in use still.
+            self.painter.recover();
+        }
+        drawn
+    }
+
+    fn paint_from(
+        &mut self,
+        picture: usize,
+        camera: Camera,
+        options: &PictureOptions,
+        take: Take<'_>,
+    ) -> Result<Cost, DrawError> {
+        let (table, legend) = self.colored.picture(picture)?;
+        let legend = (!self.asked.picture.look.no_legend).then_some(&legend);
+        let overlay = self.overlay.again(legend, &camera);
+        let mut lay = |top: u32, mut band: Image| {
+            overlay.lay_on(top, &mut band);
+            take(top, band)
+        };
+        let near = camera.near(&self.around);
+        let view = Viewpoint { camera, near };
+        let cells: Vec<&MeshedCell> = self.cells.iter().collect();
+        let shown = shown(&self.asked, &cells, &self.placements, &self.colored);
+        self.painter.draw(&shown, &view, &table, options, &mut lay)
+    }
+
+    /// What a picture draws.
+    ///
+    /// # Errors
+    /// There is no such picture, or the device fails.
+    pub fn counted(&mut self, picture: usize) -> Result<SourceStats, DrawError> {
+        let Some(camera) = self.camera(picture) else {
+            return Err(DrawError::Failed("there is no such picture".into()));
+        };
+        let near = camera.near(&self.around);
+        let options = self.asked.picture.drawn(self.colored.least_width());
+        self.painter.stats(&Viewpoint { camera, near }, &options)
+    }
+}
+
+fn shown<'a>(
+    asked: &'a DrawOptions,
+    cells: &'a [&'a MeshedCell],
+    placements: &'a [(usize, Placement)],
+    colored: &'a PictureColors,
+) -> Shown<'a> {
+    Shown {
+        asked,
+        cells,
+        placements,
+        colored,
+    }
+}
+
+/// A picture that grows band by band.
+struct Whole {
+    image: Image,
+}
+
+impl Whole {
+    fn new([width, height]: [u32; 2]) -> Result<Self, DrawError> {
+        let pixels = memory::reserved(4 * width as usize * height as usize);
+        let pixels =
+            pixels.map_err(|e| DrawError::Memory(format!("{e}: choose a smaller size=")))?;
+        Ok(Self {
+            image: Image {
+                width,
+                height,
+                pixels,
+            },
+        })
+    }
+
+    fn take(&mut self, band: &Image) -> Result<(), DrawError> {
+        self.image.pixels.extend_from_slice(&band.pixels);
+        Ok(())
+    }
+}
+
+/// A clock that tells the seconds since it was asked last.
+struct Clock(Instant);
+
+impl Clock {
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let seconds = (now - self.0).as_secs_f64();
+        self.0 = now;
+        seconds
+    }
+}
