@@ -62,6 +62,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "neurotess-batch",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-mesh",
+            "neurotess-recipe",
+            "neurotess-output",
+            // Cells of circuits, behind a feature.
+            "neurotess-circuit",
+        ],
+    ),
+    (
         "neurotess-web",
         &[
             "neurotess-morphology",
@@ -128,6 +140,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-cache",
             "neurotess-union",
             "neurotess-recipe",
+            "neurotess-batch",
             "neurotess-web",
         ],
     ),

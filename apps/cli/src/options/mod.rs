@@ -13,7 +13,6 @@ pub(crate) mod numbers;
 pub(crate) mod out;
 pub(crate) mod radius;
 pub(crate) mod rings;
-pub(crate) mod shard;
 #[cfg(feature = "render")]
 pub(crate) mod size;
 pub(crate) mod soma;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use neurotess::batch::Shard;
 use neurotess::generate::Smooth;
 use neurotess::mesh::{Format, Unit};
 
@@ -10,7 +11,6 @@ use crate::options::cells::CellArgs;
 use crate::options::out::OutArgs;
 use crate::options::radius::RadiusArgs;
 use crate::options::rings::RingArgs;
-use crate::options::shard::Shard;
 use crate::options::soma::SomaArg;
 use crate::options::types::Types;
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use neurotess::batch::{self, Input, Inputs};
 use neurotess::cache::Cache;
 use neurotess::circuit::Compartment;
 use neurotess::coloring::with_middles;
@@ -19,8 +20,6 @@ use neurotess::render::Proxy;
 
 use super::args::{LodMode, RenderArgs};
 use crate::io::batch::each;
-use crate::io::inputs::{Input, Inputs};
-use crate::io::morphologies::read_morphology;
 use crate::report::{Entry, Failure, Reporter, place};
 
 /// Number of cells, or of placements of cells, from which on a cell has a few bounding spheres instead of one per point.
@@ -127,7 +126,7 @@ fn cell(
     read: ReadOptions,
     meshing: &Meshing<'_>,
 ) -> Result<MeshedCell, Failure> {
-    let mut read = read_morphology(&input.path, None, &read)?;
+    let mut read = batch::read(&input.path, None, &read)?;
     if !cut.is_empty() {
         read.morphology = with_middles(&read.morphology, cut);
     }

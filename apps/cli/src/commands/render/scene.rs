@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use itertools::Itertools;
+use neurotess::batch::{Input, Inputs, MORPHOLOGIES};
 use neurotess::cache::{Cache, Summary};
 use neurotess::circuit::{Compartment, Instance, soma_center};
 use neurotess::coloring::cuts;
@@ -13,7 +14,6 @@ use super::args::RenderArgs;
 use super::cells::{self, MeshedCell};
 use super::circuit_instances::CircuitInstances;
 use crate::io::circuits::{self, partition};
-use crate::io::inputs::{Input, Inputs};
 use crate::report::{Entry, Failed, Failure, Reporter, usage};
 
 /// What is drawn.
@@ -38,7 +38,7 @@ pub(crate) fn read(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<Ren
         [path] if others.is_empty() => of_circuit(path, args, reporter),
         [] => {
             check_of_cells(args)?;
-            let inputs = Inputs::find(&args.inputs, &crate::io::morphologies::MORPHOLOGIES);
+            let inputs = Inputs::find(&args.inputs, &MORPHOLOGIES);
             let entries = cells::read(&inputs, &HashMap::new(), args, None, reporter)?;
             let done = entries.iter().filter(|e| matches!(e, Entry::Done(_)));
             let placements = (0..done.count()).map(|cell| (cell, Placement::default()));
