@@ -93,6 +93,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "neurotess-batch",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-mesh",
+            "neurotess-recipe",
+            "neurotess-output",
+            // Cells of circuits, behind a feature.
+            "neurotess-circuit",
+        ],
+    ),
+    (
         "neurotess-web",
         &[
             "neurotess-morphology",
@@ -161,6 +173,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-cache",
             "neurotess-union",
             "neurotess-recipe",
+            "neurotess-batch",
             "neurotess-web",
         ],
     ),

@@ -21,7 +21,7 @@ pub use tracing::smooth::Smoothing;
 pub use warning::Warning;
 
 use glam::DVec3;
-use neurotess_mesh::{CoarseMesh, Role, SectionNumber, SwcType, Vertex, Watch};
+use neurotess_mesh::{CoarseMesh, Role, SectionNumber, Stage, Steps, SwcType, Vertex, Watch};
 use neurotess_morphology::{Morphology, NeuriteKind, Soma};
 
 use soma::first_rings::RingRequests;
@@ -150,6 +150,7 @@ fn labeled(
     options: &GenerateOptions,
     watch: &Watch<'_>,
 ) -> Result<Generated, GenerateError> {
+    let mut steps = Steps::begin(watch, Stage::Mesh, 4);
     let mut warnings = Warnings::default();
     if let Some(message) = unused_kinds([morphology], options.kinds.as_deref()) {
         warnings.add("types_unused", None, &message);
@@ -182,6 +183,7 @@ fn labeled(
     }
     stems::gather(&mut skeleton, &soma_spheres, &mut warnings);
     watch.check()?;
+    steps.next();
     let start = watch.seconds();
     let requests = RingRequests::new(morphology, options);
     let built = soma::build(
@@ -194,6 +196,7 @@ fn labeled(
     );
     let soma_seconds = watch.seconds() - start;
     watch.check()?;
+    steps.next();
 
     thin::drop_buried_twigs(&mut skeleton, &mut warnings);
     thin::merge_close_forks(&mut skeleton, &mut warnings);
@@ -214,6 +217,7 @@ fn labeled(
         )),
     };
     watch.check()?;
+    steps.next();
     let may_join = |from: u32, to: u32| {
         let separated = separated.as_ref();
         separated.is_none_or(|separated| separated.clearance.allows(from, to))
@@ -223,8 +227,9 @@ fn labeled(
         soma_spheres: &soma_spheres,
         surfaces: &built.somata,
     };
-    let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, watch);
+    let mut mesh = judge::sound_mesh(&skeleton, &somata, &may_join, &mut warnings, &steps);
     watch.check()?;
+    steps.next();
     mesh.origin = morphology.origin;
     if let Some(polygons) = options.polygons {
         tell_traced_radii(&mut mesh, polygons);

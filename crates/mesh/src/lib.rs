@@ -46,6 +46,7 @@ mod placed;
 mod quality;
 mod read;
 mod sound;
+mod steps;
 mod surface;
 mod table;
 mod topology;
@@ -81,6 +82,7 @@ pub use read::{
     read_with_attributes,
 };
 pub use sound::{Extent, Soundness, Unsound};
+pub use steps::Steps;
 pub use surface::{Faces, Region, Surface, SurfaceMesh, SurfaceVertex, VertexAttribute};
 pub use table::{SurfaceTriangle, write_triangles};
 pub use topology::{Topology, genus_by_component, topology};

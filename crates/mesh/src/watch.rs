@@ -19,7 +19,7 @@ pub struct Progress {
     pub stage: Stage,
     /// Steps that are done.
     pub done: usize,
-    /// Steps in all, about; 0 where they are not counted.
+    /// Steps in all, about; never 0.
     pub all: usize,
 }
 

@@ -48,7 +48,7 @@
 //! ```
 //!
 //! One value of options does the same, and more: [`read`], [`mesh()`] and, with the feature `render`, `draw` are
-//! meshes and pictures in a line each; see [`recipe`].
+//! meshes and pictures in a line each; see [`recipe`]. [`Batch`] meshes a folder of tracings into another.
 //!
 //! The **coarse mesh** is small and is what a renderer needs; the **surface** may be far larger than
 //! memory. For a surface as fine as an error asks for, use
@@ -76,12 +76,15 @@
 //! | [`union`] | the exact union of a surface with itself: nothing crosses | |
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
 //! | [`recipe`] | from a tracing to the mesh that a purpose needs, and its files: all stages by one value of options | |
+//! | [`batch`] | many tracings, or the cells of a circuit, meshed into a folder | cells of circuits: `circuit` |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
 //! All features are on by default. Without any, the crate meshes SWC files and needs neither wgpu nor HDF5.
 #![forbid(unsafe_code)]
 
+pub use neurotess_batch as batch;
+pub use neurotess_batch::Batch;
 #[cfg(feature = "circuit")]
 pub use neurotess_cache as cache;
 #[cfg(feature = "circuit")]
@@ -105,7 +108,7 @@ pub use neurotess_plot as plot;
 #[cfg(feature = "render")]
 pub use neurotess_raster as raster;
 pub use neurotess_recipe as recipe;
-pub use neurotess_recipe::{mesh, read};
+pub use neurotess_recipe::{mesh, read, read_with};
 pub use neurotess_refine as refine;
 #[cfg(feature = "gpu")]
 pub use neurotess_render as render;

@@ -11,7 +11,7 @@ use crate::merged::Merged;
 use crate::refined::vertex_count;
 use crate::surface::CellSurface;
 use crate::thinning::Thinning;
-use crate::{MeshError, MeshOptions, Stage, Watch, memory, soma_mesh, verdict};
+use crate::{MeshError, MeshOptions, Watch, memory, soma_mesh, verdict};
 
 /// How often a mesh for simulators is made again with thinner tubes.
 const ROUNDS: usize = 6;
@@ -118,7 +118,6 @@ fn generated(
     options: &MeshOptions,
     watch: &Watch<'_>,
 ) -> Result<Arc<Generated>, MeshError> {
-    watch.tell(Stage::Mesh, 0, 0);
     let options = soma_mesh::generate_options(options, morphology)?;
     let generated = generate_watched(morphology, &options, watch);
     generated.map(Arc::new).map_err(|e| match e {
@@ -143,7 +142,6 @@ impl CellMesh {
         }
         if options.merges() {
             memory::check((vertices as u64).saturating_mul(BYTES_TO_MERGE))?;
-            watch.tell(Stage::Merge, 0, 0);
         }
         let start = watch.seconds();
         let merged = options

@@ -56,7 +56,7 @@ pub use neurotess_mesh::{Progress, Stage, Watch};
 pub use options::{Crossings, Levels, MeshOptions, Purpose, Radii, SIMULATION_ASPECT};
 pub use report::{CrossingsReport, MeshReport, SeparationReport, SmoothingReport};
 pub use surface::CellSurface;
-pub use tracing::{Tracing, read};
+pub use tracing::{Tracing, read, read_with};
 pub use value::OptionValue;
 pub use warning::{SurfaceWarning, Warning};
 pub use words::{KINDS, neurite_kinds};

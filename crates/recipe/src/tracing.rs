@@ -28,8 +28,16 @@ impl AsRef<Morphology> for Tracing {
 /// # Errors
 /// With file, line, what is wrong and what to do.
 pub fn read(file: impl AsRef<Path>) -> Result<Tracing, ReadError> {
+    read_with(file, &ReadOptions::default())
+}
+
+/// [`read`], which takes warnings as errors, mends radii, or leaves units alone, as options ask for it.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with(file: impl AsRef<Path>, options: &ReadOptions) -> Result<Tracing, ReadError> {
     let file = file.as_ref();
-    let read = neurotess_formats::read(file, &ReadOptions::default())?;
+    let read = neurotess_formats::read(file, options)?;
     Ok(Tracing {
         morphology: read.morphology,
         warnings: read.warnings,

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use neurotess_mesh::{SurfaceMesh, Topology, Watch, measure, search_self_intersections_watched};
+use neurotess_mesh::{
+    Stage, Steps, SurfaceMesh, Topology, Watch, measure, search_self_intersections_watched,
+};
 
 use crate::handles::fill::fill;
 use crate::handles::rejoin::rejoin;
@@ -49,10 +51,12 @@ pub fn union_watched(
     watch: &Watch<'_>,
 ) -> Result<Union, UnionError> {
     watch.check()?;
+    let mut steps = Steps::begin(watch, Stage::Merge, 5);
     let mut work = Work::new(mesh)?;
     watch.check()?;
     let mut report = before(&work)?;
     let mut pairs = crossings(&work, watch)?;
+    steps.next();
     let crossed = corners_of(&work, &pairs);
     report.pairs_before = pairs.len();
     report.places = places(&work, &pairs);
@@ -74,6 +78,7 @@ pub fn union_watched(
 
     let most = MAX_GROWTH * pairs.len() + work.triangles.len();
     pairs = merge(&mut work, pairs, most, true, options, &mut report, watch)?;
+    steps.next();
     if options.rejoin && !report.cut_off.is_empty() && pairs.is_empty() {
         let (joined, hidden) = rejoin(&mut work, mesh, options, watch)?;
         report.joined = joined;
@@ -83,6 +88,7 @@ pub fn union_watched(
     if options.fill > 0.0 && pairs.is_empty() {
         report.filled = fill(&mut work, options, report.handles_before, watch)?;
     }
+    steps.next();
     if report.rounds > 0 && pairs.is_empty() {
         report.smoothed = smooth(&mut work, options.smoothing);
     }
@@ -94,6 +100,7 @@ pub fn union_watched(
     }
     renew_normals(&mut work);
     watch.check()?;
+    steps.next();
     let of_changed = match searched {
         true => 0,
         false => work.crossings_of_changed().len(),
@@ -103,6 +110,7 @@ pub fn union_watched(
     let mesh = work.finish();
     let topology = mesh.topology();
     after(&mesh, &topology, &mut report);
+    steps.next();
     Ok(Union {
         mesh,
         topology,

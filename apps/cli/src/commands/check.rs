@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess::batch::standard::standard_input;
+use neurotess::batch::{Input, InputError, Inputs};
 use neurotess::mesh::{self, Format, Report};
 use serde::Serialize;
 
 use crate::io::batch::each;
-use crate::io::inputs::{Input, Inputs};
 use crate::io::output::is_standard;
-use crate::io::standard_input::standard_input;
 use crate::report::{Entry, Failure, Reporter};
 
 /// `neurotess check`
@@ -63,7 +63,7 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
         }
         (true, Some(format)) => {
             let nothing = |head: &[u8]| head.len() > 1 << 15 && head.iter().all(|&byte| byte == 0);
-            mesh::read_bytes(&standard_input(nothing)?, format)
+            mesh::read_bytes(&standard_input(nothing).map_err(InputError::from)?, format)
         }
         (false, Some(format)) => mesh::read_as(&input.path, format),
         (false, None) => mesh::read(&input.path),

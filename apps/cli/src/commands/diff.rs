@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use neurotess::batch;
 use neurotess::formats::ReadOptions;
 use neurotess::morphology::edit::BeforeAfter;
 use neurotess::morphology::{Difference, Differing, MatchedBy};
 use serde::Serialize;
 
-use crate::io::morphologies::read_morphology;
 use crate::io::output::is_standard;
 use crate::report::{Reporter, count, usage};
 
@@ -46,10 +46,10 @@ pub(crate) fn run(args: &DiffArgs, reporter: &Reporter) -> anyhow::Result<()> {
     if paths.iter().all(|path| is_standard(path)) {
         return usage("standard input is one tracing: give a file for the other");
     }
-    let read = |path: &Path| match read_morphology(path, None, &ReadOptions::default()) {
+    let read = |path: &Path| match batch::read(path, None, &ReadOptions::default()) {
         Ok(read) => Some(read.morphology),
-        Err(failure) => {
-            reporter.failure(&failure);
+        Err(error) => {
+            reporter.error(&error.to_string());
             None
         }
     };

@@ -1,9 +1,10 @@
 //! `neurotess --version`.
 
+use neurotess::batch::MORPHOLOGIES;
 use neurotess::mesh::Format;
 use serde_json::json;
 
-use crate::io::morphologies::{MORPHOLOGIES, written};
+use crate::io::morphologies::written;
 use crate::report::Reporter;
 
 /// The best graphics adapter, or why there is none: pictures need none.

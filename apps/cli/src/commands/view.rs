@@ -4,14 +4,13 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess::batch::{Inputs, MORPHOLOGIES};
 use neurotess::options::groups::{DeviceOptions, MarkerOptions as AskedMarkers, Rings};
 use neurotess::options::words::MeshBeside;
 use neurotess::options::{MeshesBeside, OptionError};
 use neurotess_viewer::CommandListener;
 use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
 
-use crate::io::inputs::Inputs;
-use crate::io::morphologies::MORPHOLOGIES;
 use crate::options::cache::CacheArgs;
 use crate::report::{Reporter, usage};
 
@@ -56,8 +55,8 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
             continue;
         }
         let found = Inputs::find(std::slice::from_ref(input), &MORPHOLOGIES);
-        for failure in &found.failures {
-            reporter.failure(failure);
+        for not_found in &found.not_found {
+            reporter.error(&not_found.to_string());
         }
         inputs.extend(found.files.into_iter().map(|file| file.path));
     }

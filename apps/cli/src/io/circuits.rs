@@ -1,6 +1,5 @@
 //! Inputs that are circuits.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use neurotess::circuit::{Circuit, Instance, NodeRef, is_circuit};
@@ -40,38 +39,4 @@ pub(crate) fn instances(
         ));
     }
     instances
-}
-
-/// A file for each cell: population and id; the row too where several rows share an id.
-pub(crate) fn files(
-    circuit: &Circuit,
-    instances: &[Instance],
-    folder: &Path,
-    extension: &str,
-) -> Vec<PathBuf> {
-    let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
-    let file = |instance: &Instance| {
-        let population = &circuit.populations[instance.node.population as usize].name;
-        // A population's name comes from the file and may contain any characters.
-        let plain: String = population
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "-_.".contains(c) {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
-        let plain = plain.trim_start_matches('.');
-        let id = instance.id;
-        let mut out = folder.join(format!("{plain}_{id}.{extension}"));
-        if !taken.insert(out.clone()) {
-            let row = instance.node.row;
-            out = folder.join(format!("{plain}_{id}_row{row}.{extension}"));
-            taken.insert(out.clone());
-        }
-        out
-    };
-    instances.iter().map(file).collect()
 }

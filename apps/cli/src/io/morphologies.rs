@@ -1,16 +1,15 @@
-//! Morphologies from files or standard input, and into files.
+//! What is said of morphologies that are read, and morphologies into files.
 
 use std::io::BufWriter;
 use std::path::Path;
 
 use neurotess::formats::swc::SampleNumbers;
-use neurotess::formats::{self, Format, ReadOptions};
+use neurotess::formats::{self, Format};
 use neurotess::morphology::Morphology;
 use serde::Serialize;
 
-use super::output::{self, OutputError, is_standard};
-use super::standard_input::standard_input;
-use crate::report::{Failure, place};
+use super::output::{self, OutputError};
+use crate::report::place;
 
 /// A warning of the reader.
 #[derive(Clone, Debug, Serialize)]
@@ -68,55 +67,6 @@ impl From<formats::Warning> for ReaderWarning {
     }
 }
 
-/// Extensions of morphologies that are looked for in folders.
-pub(crate) const MORPHOLOGIES: [&str; 16] = [
-    "swc",
-    "eswc",
-    "asc",
-    "h5",
-    "hdf5",
-    "nml",
-    "neuroml",
-    "traces",
-    "swc.gz",
-    "eswc.gz",
-    "asc.gz",
-    "h5.gz",
-    "hdf5.gz",
-    "nml.gz",
-    "neuroml.gz",
-    "traces.gz",
-];
-
-/// Reads the morphology of an input.
-pub(crate) fn read_morphology(
-    path: &Path,
-    format: Option<Format>,
-    options: &ReadOptions,
-) -> Result<formats::Read, Failure> {
-    let read = match is_standard(path) {
-        true => {
-            let no_text = |head: &[u8]| head.contains(&0) && !head.starts_with(b"\x89HDF");
-            formats::read_bytes(standard_input(no_text)?, "-", format, options)
-        }
-        false => formats::read(path, options),
-    };
-    read.map_err(|e| Failure(e.to_string()))
-}
-
-/// An error if an input cannot be read at all, before anything is reported of its output.
-pub(crate) fn readable(path: &Path) -> Result<(), Failure> {
-    if is_standard(path) {
-        return Ok(());
-    }
-    formats::regular(formats::member(path).0).map_err(|e| {
-        let file = path.display();
-        Failure(format!(
-            "{file}: cannot be read ({e}): check the path and its permissions"
-        ))
-    })
-}
-
 /// Writes a morphology to a file, whole or not at all. Returns what the format cannot represent. `numbers`: of the samples
 /// in SWC.
 pub(crate) fn write_morphology(
@@ -137,19 +87,4 @@ pub(crate) fn write_morphology(
 /// Formats that are written, by their extensions.
 pub(crate) fn written() -> [&'static str; Format::WRITTEN.len()] {
     Format::WRITTEN.map(|format| format.extensions()[0])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_format_is_looked_for_packed_or_not() {
-        let packed = formats::EXTENSIONS.map(|extension| format!("{extension}.gz"));
-        let all: Vec<&str> = formats::EXTENSIONS
-            .into_iter()
-            .chain(packed.iter().map(String::as_str))
-            .collect();
-        assert_eq!(all, MORPHOLOGIES);
-    }
 }

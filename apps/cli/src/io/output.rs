@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use crate::report::Reporter;
+use neurotess::batch::standard;
+pub(crate) use neurotess::batch::standard::is_standard;
 pub(crate) use neurotess::output::{Existing, Output, OutputError};
 
 /// Whether existing files may be replaced.
@@ -11,11 +13,6 @@ pub(crate) fn existing(force: bool) -> Existing {
         true => Existing::Replace,
         false => Existing::Refuse("use --force to replace it"),
     }
-}
-
-/// Whether OUT is standard output.
-pub(crate) fn is_standard(out: &Path) -> bool {
-    out == Path::new("-")
 }
 
 /// Reserves standard output for OUT, if OUT is `-`.
@@ -39,8 +36,5 @@ pub(crate) fn check(out: &Path, force: bool) -> Result<(), OutputError> {
 
 /// Begins an output: a file, or standard output.
 pub(crate) fn begin(out: &Path, force: bool) -> Result<Output, OutputError> {
-    match is_standard(out) {
-        true => Output::standard(),
-        false => Output::create(out, existing(force)),
-    }
+    standard::begin(out, existing(force))
 }

@@ -4,4 +4,3 @@
 pub(crate) mod cache;
 pub(crate) mod numbers;
 pub(crate) mod out;
-pub(crate) mod shard;

@@ -33,9 +33,10 @@ impl<'r> Progress<'r> {
         Self { reporter, bar }
     }
 
-    /// Adds to the number of things to do.
-    pub(crate) fn expect(&self, more: usize) {
-        self.bar.inc_length(more as u64);
+    /// Says how many of how many things are done.
+    pub(crate) fn at(&self, done: usize, all: usize) {
+        self.bar.set_length(all as u64);
+        self.bar.set_position(done as u64);
     }
 
     /// Counts one thing as done.

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use neurotess_mesh::{CoarseMesh, Watch};
+use neurotess_mesh::{CoarseMesh, Steps, Watch};
 use rayon::prelude::*;
 
 use super::layout::Layout;
@@ -27,8 +27,9 @@ pub(crate) fn mesh(
     somata: &Somata<'_>,
     may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
-    watch: &Watch<'_>,
+    steps: &Steps<'_>,
 ) -> CoarseMesh {
+    let watch = steps.watch();
     let mut trials = ForkTrials::new(skeleton);
     let made = Layout::new(skeleton, trials.choices(), Some(somata), may_join);
     let first = trials.choices().to_vec();
@@ -36,6 +37,7 @@ pub(crate) fn mesh(
     trials.advance([judged]);
     loop {
         let open = trials.open();
+        steps.part(trials.len() - open.len(), trials.len());
         if open.is_empty() || watch.is_stopped() {
             break;
         }

@@ -132,6 +132,11 @@ impl ForkTrials {
         &self.choices
     }
 
+    /// Number of forks.
+    pub(crate) fn len(&self) -> usize {
+        self.trials.len()
+    }
+
     /// Forks whose choice is not settled.
     pub(crate) fn open(&self) -> Vec<u32> {
         let open = self.trials.iter().filter(|(_, trial)| !trial.settled);

@@ -10,7 +10,7 @@ mod refined_patches;
 mod repair;
 mod sound;
 
-use neurotess_mesh::{CoarseMesh, Watch};
+use neurotess_mesh::{CoarseMesh, Steps};
 
 use crate::plan::MayJoin;
 use crate::tracing::Skeleton;
@@ -24,13 +24,13 @@ pub(crate) fn sound_mesh(
     somata: &Somata<'_>,
     may_join: &MayJoin<'_>,
     warnings: &mut Warnings,
-    watch: &Watch<'_>,
+    steps: &Steps<'_>,
 ) -> CoarseMesh {
     let mut found = Warnings::default();
-    let mut mesh = choose::mesh(skeleton, somata, may_join, &mut found, watch);
+    let mut mesh = choose::mesh(skeleton, somata, may_join, &mut found, steps);
     for simpler in Simpler::ALL {
         let faulty = sound::faulty_samples(&mesh);
-        if faulty.is_empty() || watch.is_stopped() {
+        if faulty.is_empty() || steps.watch().is_stopped() {
             break;
         }
         found = Warnings::default();
@@ -40,7 +40,7 @@ pub(crate) fn sound_mesh(
             "path turns back within its own tube, which would be inside out: meshed without these turns",
         );
         let simpler = simpler.of(skeleton, &faulty);
-        mesh = choose::mesh(&simpler, somata, &|_, _| true, &mut found, watch);
+        mesh = choose::mesh(&simpler, somata, &|_, _| true, &mut found, steps);
     }
     warnings.extend(found);
     mesh

@@ -1,11 +1,12 @@
 //! Meshes for surfaces and for solvers.
 
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 
 use neurotess_mesh::{SurfaceMesh, measure_surface};
 use neurotess_recipe::{
-    Crossings, MeshError, MeshOptions, Spelling, Watch, mesh, mesh_from, mesh_watched,
+    Crossings, MeshError, MeshOptions, Progress, Spelling, Stage, Watch, mesh, mesh_from,
+    mesh_watched,
 };
 
 use crate::{SMALL, cell};
@@ -92,6 +93,23 @@ fn a_coarse_mesh_that_is_there_gives_the_same() {
         let again = mesh_from(there, cell.clone(), &options, &Watch::default()).expect("meshed");
         let [made, again] = [made, again].map(|m| SurfaceMesh::collect(m.surface().surface()));
         assert_eq!(made, again);
+    }
+}
+
+#[neurotess_testing::test]
+fn it_is_told_how_far_meshing_and_merging_are() {
+    let told: Mutex<Vec<Progress>> = Mutex::default();
+    let note = |progress| told.lock().expect("sound").push(progress);
+    let watch = Watch::default().with_progress(&note);
+    let options = MeshOptions::default().with_crossings(Crossings::Merge);
+    mesh_watched(Arc::new(cell(SMALL)), &options, &watch).expect("meshed");
+    let told = told.into_inner().expect("sound");
+    for stage in [Stage::Mesh, Stage::Merge] {
+        let of_stage = told.iter().filter(|told| told.stage == stage);
+        let of_stage: Vec<&Progress> = of_stage.collect();
+        let (first, last) = (of_stage[0], of_stage[of_stage.len() - 1]);
+        assert!(of_stage.len() > 3 && of_stage.is_sorted_by_key(|told| told.done));
+        assert!(first.done == 0 && first.all > 0 && last.done == last.all);
     }
 }
 

@@ -5,14 +5,14 @@ use std::sync::atomic::Ordering;
 
 use glam::DVec3;
 use itertools::Itertools;
+use neurotess::batch::{self, Inputs, targets};
 use neurotess::circuit::{Circuit, Instance, soma_center};
 use neurotess::formats::Format;
 use neurotess::morphology::edit::{self, Edit};
 
 use super::{ConvertArgs, Converted, EditRecipe, NodeName, read, tell_all, written};
-use crate::io::inputs::Inputs;
 use crate::io::output::{self, is_standard};
-use crate::io::{circuits, targets, workers};
+use crate::io::{circuits, workers};
 use crate::report::{Entry, Failed, Failure, Progress, Reporter, bug, usage};
 
 /// The cells of a run.
@@ -123,7 +123,7 @@ fn target(out: &Path, args: &ConvertArgs, cells: &Cells) -> anyhow::Result<(Form
         ));
     }
     let extension = format.extensions()[0];
-    let files = circuits::files(&cells.circuit, &cells.instances, out, extension);
+    let files = batch::circuit::files(&cells.circuit, &cells.instances, out, extension);
     Ok((format, files))
 }
 

@@ -11,6 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use neurotess::batch::{self, Input, Inputs, MORPHOLOGIES, readable, targets};
 use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format, ReadOptions};
 use neurotess::morphology::edit::{EditReport, Edited};
@@ -18,14 +19,9 @@ use serde::Serialize;
 
 use crate::io::batch::each;
 use crate::io::circuits::partition;
-use crate::io::inputs::{Input, Inputs};
-use crate::io::morphologies::{
-    MORPHOLOGIES, ReaderWarning, read_morphology, readable, write_morphology,
-    written as written_formats,
-};
+use crate::io::morphologies::{ReaderWarning, write_morphology, written as written_formats};
 use crate::io::output::{self, OutputError};
-use crate::io::targets;
-use crate::report::{Entry, Failed, Failure, Reporter, usage};
+use crate::report::{Entry, Failed, Failure, Reporter, Usage, usage};
 use edits::EditArgs;
 pub use in_memory::EditRecipe;
 use neurotess::options::groups::CellSelection;
@@ -165,7 +161,8 @@ fn target(
     let named = out.extension().unwrap_or_default();
     let named = Format::of_extension(&named.to_string_lossy());
     reporter.warn_of_name(out, format.name(), named.map(Format::name));
-    let jobs = targets::plan(inputs, out, format.extensions()[0])?;
+    let jobs =
+        targets::plan(inputs, out, format.extensions()[0]).map_err(|e| Usage(e.to_string()))?;
     let outs = jobs.into_iter().map(|job| (job.input, job.out)).collect();
     Ok(Target { format, outs })
 }
@@ -195,7 +192,7 @@ fn read(path: &Path, args: &ConvertArgs) -> Result<formats::Read, Failure> {
         unit_given: args.edits.gives_unit(),
         ..ReadOptions::default()
     };
-    read_morphology(path, None, &options)
+    Ok(batch::read(path, None, &options)?)
 }
 
 /// Writes an edited tracing, unless this is a dry run.

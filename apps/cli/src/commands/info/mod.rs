@@ -9,6 +9,7 @@ mod text;
 use std::path::PathBuf;
 
 use clap::Args;
+use neurotess::batch::{self, Input, Inputs, MORPHOLOGIES};
 use neurotess::formats::{Format, ReadOptions};
 use neurotess::morphology::Measures;
 use neurotess::morphology::sholl::{self, TooManySpheres};
@@ -17,8 +18,7 @@ use serde::{Serialize, Serializer};
 
 use crate::io::batch::each;
 use crate::io::circuits::partition;
-use crate::io::inputs::{Input, Inputs};
-use crate::io::morphologies::{MORPHOLOGIES, ReaderWarning, read_morphology};
+use crate::io::morphologies::ReaderWarning;
 use crate::io::output;
 use crate::options::numbers::positive;
 use crate::report::{Entry, Failure, Reporter, count, usage};
@@ -153,7 +153,7 @@ fn morphology_format(name: &str) -> Result<Format, String> {
 }
 
 fn measure(input: &Input, args: &InfoArgs, options: ReadOptions) -> Result<Info, Failure> {
-    let read = read_morphology(&input.path, args.format, &options)?;
+    let read = batch::read(&input.path, args.format, &options)?;
     let file = input.path.display().to_string();
     let failed = |e: TooManySpheres| Failure(format!("{file}: {e}"));
     let sholl = |step| {

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use neurotess::batch::Shard;
 use neurotess::generate::Smooth;
 use neurotess::mesh::{Format, Unit};
 
 use crate::options::out::OutArgs;
-use crate::options::shard::Shard;
 use neurotess::options::groups::CellSelection;
 use neurotess::options::groups::MissingRadii;
 use neurotess::options::groups::Rings;

@@ -2,20 +2,23 @@
 //! node.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
+use glam::DVec3;
 use itertools::Itertools;
-use neurotess::circuit::{Circuit, Instance};
+use neurotess::batch::{self, Inputs};
+use neurotess::circuit::{Circuit, Instance, soma_center};
 use neurotess::mesh::{Format, GlbNode, Surface, WriteError, WriteOptions, write_glb};
+use neurotess::recipe::{CellMesh, CellSurface, Spelling, Watch, mesh_watched};
 use serde::Serialize;
 
 use super::args::MeshArgs;
-use super::cell::{self, PlannedSurface, Prepared};
 use super::options::MeshOptions;
-use crate::io::inputs::Inputs;
 use crate::io::output::{Output, OutputError, existing};
 use crate::io::workers;
-use crate::report::{Progress, Reporter, bug, count, usage};
+use crate::report::{Failure, Progress, Reporter, bug, count, usage};
 
 /// The object of the JSON list.
 #[derive(Serialize)]
@@ -54,7 +57,7 @@ pub(super) fn run(
         one_file: true,
         ..Inputs::default()
     };
-    let options = MeshOptions::new(args, &one, false)?;
+    let options = MeshOptions::new(args, &one)?;
     if options.files.format != Format::Glb {
         return usage("only GLB holds a circuit in one file: leave out --format");
     }
@@ -70,14 +73,11 @@ pub(super) fn run(
     if shown.is_empty() {
         anyhow::bail!("{}: no cell to write: choose others", circuit.file);
     }
-    let surfaces: Vec<PlannedSurface<'_>> = prepared
+    let surfaces: Vec<CellSurface<'_>> = prepared
         .values()
-        .map(|cell| cell.surface(&options))
+        .map(|cell| cell.meshed.surface_for(options.files.format))
         .collect();
-    let surfaces: Vec<&dyn Surface> = surfaces
-        .iter()
-        .map(|planned| planned.surface.surface())
-        .collect();
+    let surfaces: Vec<&dyn Surface> = surfaces.iter().map(CellSurface::surface).collect();
     let numbers: BTreeMap<u32, usize> = prepared.keys().copied().zip(0..).collect();
     let nodes: Vec<GlbNode> = shown
         .iter()
@@ -120,6 +120,28 @@ pub(super) fn run(
     reporter.document(&[report])
 }
 
+/// A morphology that was meshed.
+struct Prepared {
+    meshed: CellMesh,
+    /// Center of the soma in the tracing's coordinates (µm).
+    soma_center: DVec3,
+}
+
+fn prepare(input: &Path, options: &MeshOptions) -> Result<Prepared, Failure> {
+    let read = batch::read(input, None, &options.read)?;
+    let soma_center = soma_center(&read.morphology);
+    let meshed = mesh_watched(
+        Arc::new(read.morphology),
+        &options.recipe,
+        &Watch::default(),
+    );
+    let told = |what: String| Failure(format!("{}: {what}", input.display()));
+    Ok(Prepared {
+        meshed: meshed.map_err(|e| told(e.told(Spelling::Flag)))?,
+        soma_center,
+    })
+}
+
 /// Reads and generates each morphology once, on all cores; reports those that fail.
 fn prepare_all(
     circuit: &Circuit,
@@ -133,7 +155,7 @@ fn prepare_all(
     let order: Vec<usize> = (0..templates.len()).collect();
     let progress = Progress::new(reporter, templates.len(), "morphologies");
     let results = workers::run(&templates, &order, reporter.threads(), |&template| {
-        let prepared = cell::prepare(&circuit.templates[template as usize].path, options);
+        let prepared = prepare(&circuit.templates[template as usize].path, options);
         progress.done();
         prepared
     })?;

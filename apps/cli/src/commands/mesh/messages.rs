@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::cell::CellReport;
-use super::entry::Entry;
-use crate::io::record::OutputState;
+use neurotess::batch::{CellReport, Entry, OutputState};
+
 use crate::report::{Reporter, count, place};
 
 /// Reports outputs that exist and are made again, and outputs that are kept although nothing is
@@ -34,7 +33,7 @@ pub(super) fn tell_states(states: &[OutputState], reporter: &Reporter) {
 }
 
 /// Reports a cell when it is finished.
-pub(super) fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
+pub(super) fn tell(entry: &Entry<'_>, one: bool, reporter: &Reporter) {
     match entry {
         Entry::Done(cell) => {
             reporter.result(&line(cell));
@@ -42,14 +41,13 @@ pub(super) fn tell(entry: &Entry, one: bool, reporter: &Reporter) {
                 warn(cell, reporter);
             }
         }
-        Entry::Failed(failed) => reporter.error(&failed.error),
+        Entry::Failed { error, .. } => reporter.error(error),
         Entry::Skipped { .. } => {}
     }
 }
 
 /// The line of a cell.
 pub(super) fn line(cell: &CellReport) -> String {
-    let s = &cell.seconds;
     format!(
         "{} → {}: {} vertices, {} faces, {}, {} in {:.3} s",
         cell.file,
@@ -64,36 +62,33 @@ pub(super) fn line(cell: &CellReport) -> String {
         cell.triangles + cell.quads,
         if cell.closed { "closed" } else { "NOT CLOSED" },
         count(cell.components, "part"),
-        s.read + s.soma + s.coarse + s.refine + s.write,
+        cell.seconds.of_mesh(),
     )
 }
 
 pub(super) fn warn(cell: &CellReport, reporter: &Reporter) {
     for warning in &cell.warnings {
-        let place = place(&cell.file, warning.line);
-        let (message, code) = (&warning.message, warning.code);
-        reporter.warning(&format!("{place} {message} ({code})"));
+        let place = place(&cell.file, warning.line());
+        reporter.warning(&format!("{place} {warning} ({})", warning.code()));
     }
 }
 
-/// Prints the summary to standard error.
-pub(super) fn summarize(entries: &[Entry], skipped: usize, clock: Instant, reporter: &Reporter) {
+/// Prints the summary to standard error. `kept`: how many of the entries were not to be done.
+pub(super) fn summarize(entries: &[Entry<'_>], kept: usize, clock: Instant, reporter: &Reporter) {
     let mut done = 0;
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
-    let skipped = skipped
-        + entries
-            .iter()
-            .filter(|e| matches!(e, Entry::Skipped { .. }))
-            .count();
+    let is_skipped = |entry: &&Entry<'_>| matches!(entry, Entry::Skipped { .. });
+    let skipped = entries.iter().filter(is_skipped).count();
     for entry in entries {
         if let Entry::Done(cell) = entry {
             done += 1;
             for warning in &cell.warnings {
-                *causes.entry(warning.code).or_default() += 1;
+                *causes.entry(warning.code()).or_default() += 1;
             }
         }
     }
-    if entries.len() > 1 && !causes.is_empty() {
+    let to_do = entries.len() - kept;
+    if to_do > 1 && !causes.is_empty() {
         let causes: Vec<String> = causes
             .iter()
             .map(|(code, n)| format!("{code} {n}"))
@@ -105,7 +100,7 @@ pub(super) fn summarize(entries: &[Entry], skipped: usize, clock: Instant, repor
         };
         reporter.warning(&format!("cells concerned: {}{hint}", causes.join(", ")));
     }
-    if entries.len() != 1 || skipped > 0 {
+    if to_do != 1 || kept > 0 {
         reporter.note(&format!(
             "{} meshed, {skipped} skipped, {} failed in {:.2} s",
             count(done, "cell"),

@@ -2,68 +2,52 @@
 
 use std::path::PathBuf;
 
+use neurotess::Batch;
+use neurotess::batch::{Inputs, Tables, targets};
+use neurotess::formats::ReadOptions;
 use neurotess::generate::{SomaKeep, SphereKind};
-use neurotess::mesh::{Format, Unit};
+use neurotess::mesh::Format;
 use neurotess::recipe::{
     self, Crossings, FileOptions, Levels, NamedOptions, OptionValue, OptionsError, Radii, Spelling,
 };
 use neurotess::refine::{Caps, Path};
 
 use super::args::{CapsArg, CrossingsArg, MeshArgs, PathArg, RadiiArg, SomaKeepArg, SphereArg};
-use crate::io::inputs::Inputs;
-use crate::io::output::is_standard;
-use crate::io::targets::{self, Job};
-use crate::report::{Usage, usage};
+use crate::io::output::{existing, is_standard};
+use crate::report::{Reporter, Usage, usage};
 
 /// All that a cell's mesh and its files depend on.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshOptions {
-    pub(crate) strict: bool,
+    pub(crate) read: ReadOptions,
     pub(crate) recipe: recipe::MeshOptions,
     pub(crate) files: FileOptions,
-    /// Where a row for each triangle goes.
-    pub(crate) table: Option<PathBuf>,
-    /// Where a row for each section goes.
-    pub(crate) areas: Option<PathBuf>,
     pub(crate) force: bool,
-    /// Whether volume and area are measured, which takes a pass over the surface.
-    pub(crate) measure: bool,
 }
 
 impl MeshOptions {
-    /// All that a file depends on besides its inputs, as JSON: the same options give the same text in every build that
-    /// makes the same meshes.
-    pub(crate) fn fingerprint(&self) -> anyhow::Result<String> {
-        let FileOptions {
-            format,
-            unit,
-            walls,
-            materials,
-            parts,
-            ..
-        } = self.files;
-        let text = serde_json::json!({
-            "meshes": recipe::MESHES,
-            // Those that have their defaults are not named.
-            "options": serde_json::to_value(&self.recipe)?,
-            "format": format.to_string(),
-            "meters": unit == Unit::Meter,
-            "walls": walls,
-            "materials": materials,
-            "parts": parts,
-        });
-        Ok(text.to_string())
-    }
-
-    /// Tells a job which files it has.
-    pub(super) fn complete(&self, job: &mut Job) {
-        job.beside = self.files.materials_of(&job.out);
-        job.further = self.recipe.soma_mesh.iter().cloned().collect();
-        job.parts = self.files.parts;
+    /// A batch with these options.
+    pub(super) fn of(self, batch: Batch, args: &MeshArgs, reporter: &Reporter) -> Batch {
+        let batch = batch
+            .options(self.recipe)
+            .read(self.read)
+            .files(self.files)
+            .tables(Tables {
+                triangles: args.table.clone(),
+                sections: args.areas.clone(),
+            })
+            .existing(existing(self.force))
+            .resume(args.resume)
+            .workers(reporter.threads())
+            .measures(reporter.json() || args.log.is_some());
+        match args.shard {
+            Some(shard) => batch.shard(shard),
+            None => batch,
+        }
     }
 
     /// Checks the options together and translates them.
-    pub(crate) fn new(args: &MeshArgs, inputs: &Inputs, measure: bool) -> anyhow::Result<Self> {
+    pub(crate) fn new(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Self> {
         let wrong = |error: OptionsError| Usage(error.told(Spelling::Flag));
         let mut files = FileOptions::new(format(args, inputs)?);
         files.unit = args.unit.unit();
@@ -83,13 +67,13 @@ impl MeshOptions {
         files.check(&recipe).map_err(wrong)?;
         check_outputs(args, &files, recipe.levels)?;
         Ok(Self {
-            strict: args.strict,
+            read: ReadOptions {
+                strict: args.strict,
+                ..ReadOptions::default()
+            },
             recipe,
             files,
-            table: args.table.clone(),
-            areas: args.areas.clone(),
             force: args.out.force,
-            measure,
         })
     }
 }
@@ -212,64 +196,9 @@ fn format(args: &MeshArgs, inputs: &Inputs) -> anyhow::Result<Format> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use clap::Parser;
-    use neurotess::generate::Smooth;
-    use neurotess::morphology::NeuriteKind;
-    use neurotess::refine::LodCriterion;
 
     use super::*;
-
-    /// What makes other files has another text; what does not, the same.
-    #[test]
-    fn fingerprints_tell_files_apart() {
-        let usual = MeshOptions {
-            strict: false,
-            recipe: recipe::MeshOptions::default(),
-            files: FileOptions::new(Format::Ply),
-            table: None,
-            areas: None,
-            force: false,
-            measure: false,
-        };
-        let text = |change: &dyn Fn(&mut MeshOptions)| {
-            let mut options = usual.clone();
-            change(&mut options);
-            options.fingerprint().expect("a text")
-        };
-        let same = text(&|_| {});
-        assert_eq!(
-            text(&|o| (o.strict, o.force, o.measure) = (true, true, true)),
-            same
-        );
-        let others: [&dyn Fn(&mut MeshOptions); 18] = [
-            &|o| o.recipe.levels = Levels::Coarse,
-            &|o| o.recipe.levels = Levels::Criterion(LodCriterion::Homogeneous(5)),
-            &|o| o.recipe.levels = Levels::Criterion(LodCriterion::MaxError(0.05)),
-            &|o| o.recipe = recipe::MeshOptions::simulation(),
-            &|o| o.recipe.crossings = Crossings::Merge,
-            &|o| o.recipe.crossings = Crossings::Separate,
-            &|o| o.recipe.refine.quads = true,
-            &|o| o.recipe.refine.caps = Caps::Flat,
-            &|o| o.recipe.generate.poisson = 0.31,
-            &|o| o.recipe.generate.soma_keep = SomaKeep::Area,
-            &|o| o.recipe.generate.rings = BTreeMap::from([(1, 0.5)]),
-            &|o| o.recipe.generate.kinds = Some([NeuriteKind::AXON].into_iter().collect()),
-            &|o| o.recipe.generate.smooth = Smooth::Length(2.0),
-            &|o| o.recipe.generate.unknown_radius = Some(0.4),
-            &|o| o.recipe.soma_mesh = Some("soma.ply".into()),
-            &|o| o.files.format = Format::Msh2,
-            &|o| o.files.unit = Unit::Meter,
-            &|o| o.files.walls = true,
-        ];
-        let mut all: Vec<String> = others.into_iter().map(text).collect();
-        all.push(text(&|o| o.files.materials = true));
-        all.push(text(&|o| o.files.parts = true));
-        all.push(same);
-        let distinct: std::collections::BTreeSet<_> = all.iter().collect();
-        assert_eq!(distinct.len(), all.len(), "{all:#?}");
-    }
 
     /// The options alone, without the program around them.
     #[derive(Debug, Parser)]
@@ -282,7 +211,7 @@ mod tests {
         let words = ["mesh", "-", "--out=-", "--format=ply"].into_iter();
         let Options { args } = Options::try_parse_from(words.chain(flags.iter().copied()))
             .map_err(|e| e.to_string())?;
-        let options = MeshOptions::new(&args, &Inputs::default(), false);
+        let options = MeshOptions::new(&args, &Inputs::default());
         options.map(|o| o.recipe).map_err(|e| format!("{e:#}"))
     }
 

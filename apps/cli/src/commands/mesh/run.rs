@@ -1,28 +1,87 @@
-//! A run over many cells: which of them are skipped, claimed, recorded and logged.
+//! What is said and logged of a batch while it runs.
 
-use super::cell::Made;
-use super::entry::{Entry, skipped};
-use super::messages::tell_states;
-use super::options::MeshOptions;
-use crate::io::claims::{Claim, Claimed, claim};
-use crate::io::morphologies::readable;
-use crate::io::output::OutputError;
-use crate::io::record::{OutputRecord, Stamp};
-use crate::io::targets::Job;
-use crate::report::{Failed, Failure, Log, Reporter, bug};
+use std::time::Instant;
 
-/// What all cells of a run have in common.
-pub(super) struct MeshRun<'a> {
-    pub(super) options: &'a MeshOptions,
-    pub(super) reporter: &'a Reporter,
-    pub(super) log: Option<Log>,
-    pub(super) resume: bool,
-    /// Whether it is recorded what files were made from.
-    pub(super) records: bool,
+use neurotess::Batch;
+use neurotess::batch::workers::NotedPanics;
+use neurotess::batch::{BatchError, Entry, Event, OutputState, Plan};
+use neurotess::recipe::{Progress as Told, Spelling};
+
+use super::args::MeshArgs;
+use super::messages::{summarize, tell, tell_states};
+use crate::report::{Log, Progress, Reporter, Usage};
+
+/// What is to be done.
+///
+/// # Errors
+/// Wrong usage.
+pub(super) fn plan_of(batch: Batch) -> anyhow::Result<Plan> {
+    batch.plan().map_err(|e| match e {
+        BatchError::Options(error) => Usage(error.told(Spelling::Flag)).into(),
+        BatchError::Target(error) => Usage(error.to_string()).into(),
+        other => other.into(),
+    })
 }
 
-impl MeshRun<'_> {
-    fn log(&self, entry: &Entry) {
+/// Does what is to be done, and reports it. `alone`: whether a single cell is told of in detail.
+pub(super) fn follow(
+    plan: Plan,
+    args: &MeshArgs,
+    alone: bool,
+    clock: Instant,
+    reporter: &Reporter,
+) -> anyhow::Result<()> {
+    let log = Lines {
+        log: args.log.as_deref().map(Log::open).transpose()?,
+        reporter,
+    };
+    log.kept(&plan);
+    let states: Vec<OutputState> = plan.jobs().filter_map(|(_, state)| state).collect();
+    tell_states(&states, reporter);
+    let to_do = plan.to_do();
+    let skipped = plan.jobs().count() - to_do;
+    let one = alone && to_do == 1;
+    let (total, unit) = if one { (0, "steps") } else { (to_do, "cells") };
+    let progress = Progress::new(reporter, total, unit);
+    let told = |event: Event<'_>| match event {
+        Event::Waiting(job) => {
+            let out = job.out.display();
+            reporter.note(&format!("{out} is being written by another run: waiting"));
+        }
+        Event::Progress(_, Told { done, all, .. }) if one => progress.at(done, all),
+        Event::Large(large) => reporter.warning(&large.told(Spelling::Flag)),
+        Event::Unrecorded(error) => {
+            reporter.warning(&format!("{error}; --resume will know less"));
+        }
+        Event::Written(report) => log.line(&Entry::Done(report)),
+        Event::Ended(outcome) => {
+            let entry = Entry::new(outcome, Spelling::Flag);
+            if let Entry::Failed { .. } = &entry {
+                log.line(&entry);
+            }
+            tell(&entry, one, reporter);
+            if !one {
+                progress.done();
+            }
+        }
+        _ => {}
+    };
+    let noted = NotedPanics::begin();
+    let report = plan.run(told)?;
+    drop((noted, progress));
+    let entries = report.entries(Spelling::Flag);
+    summarize(&entries, skipped, clock, reporter);
+    reporter.document(&entries)
+}
+
+/// The log, if there is one.
+struct Lines<'r> {
+    log: Option<Log>,
+    reporter: &'r Reporter,
+}
+
+impl Lines<'_> {
+    fn line(&self, entry: &Entry<'_>) {
         if let Some(log) = &self.log
             && let Err(failure) = log.line(entry)
         {
@@ -30,88 +89,16 @@ impl MeshRun<'_> {
         }
     }
 
-    /// Finds out which outputs are kept and which are to be made, and reports why.
-    pub(super) fn sort_out<T>(
-        &self,
-        all: Vec<T>,
-        record: &OutputRecord,
-        job: impl Fn(&T) -> &Job,
-    ) -> (Vec<T>, Vec<T>) {
-        if !self.resume {
-            return (Vec::new(), all);
-        }
-        let mut states = Vec::with_capacity(all.len());
-        let (skipped, to_do) = all.into_iter().partition(|item| {
-            let state = record.state_of(job(item));
-            states.push(state);
-            if state.stays() {
-                self.left(job(item));
-            }
-            state.stays()
-        });
-        tell_states(&states, self.reporter);
-        (skipped, to_do)
-    }
-
-    /// Handles an output that is kept: adds its line to the log if it is missing there.
-    fn left(&self, job: &Job) {
-        let known = |log: &Log| log.knows(&job.out.display().to_string());
-        if self.log.as_ref().is_some_and(|log| !known(log)) {
-            self.log(&skipped(job));
-        }
-    }
-
-    /// Claims a cell's file, writes it, records what it was made from and gives it its name.
-    pub(super) fn cell(
-        &self,
-        job: &Job,
-        record: &OutputRecord,
-        make: impl FnOnce(Claimed) -> Result<Made, Failure>,
-    ) -> Entry {
-        let file = job.input.display();
-        let failed = |e: OutputError| Failure(format!("{file}: {e}"));
-        let resume = self.resume.then_some(record);
-        let inputs = Stamp::of_inputs(job);
-        let claimed = readable(&job.input)
-            .and_then(|()| claim(job, self.options.force, resume, self.reporter).map_err(failed));
-        let result = match claimed {
-            Ok(Claim::Done) => return skipped(job),
-            Ok(Claim::Ours(claimed)) => make(claimed),
-            Err(failure) => Err(failure),
+    /// Adds lines of outputs that are kept where they are missing.
+    fn kept(&self, plan: &Plan) {
+        let Some(log) = &self.log else {
+            return;
         };
-        let failure = match result {
-            Ok(Made { report, files }) => {
-                let cell = Box::new(report);
-                if self.records
-                    && let Err(e) = record.add(job, inputs.as_deref(), &files.meshes(&job.out))
-                {
-                    self.reporter
-                        .warning(&format!("{e}; --resume will know less"));
-                }
-                let entry = Entry::Done(cell);
-                self.log(&entry);
-                match files.finish().map_err(failed) {
-                    Ok(()) => return entry,
-                    Err(failure) => failure,
-                }
+        for (job, state) in plan.jobs() {
+            let stays = state.is_some_and(OutputState::stays);
+            if stays && !log.knows(&job.out.display().to_string()) {
+                self.line(&Entry::kept(job));
             }
-            Err(failure) => failure,
-        };
-        self.failed(job, failure)
-    }
-
-    /// The entry of a cell that failed; also logs it.
-    pub(super) fn failed(&self, job: &Job, failure: Failure) -> Entry {
-        let entry = Entry::Failed(Failed {
-            file: job.input.display().to_string(),
-            error: failure.0,
-        });
-        self.log(&entry);
-        entry
-    }
-
-    /// The entry of a cell at which the program panicked; also logs it.
-    pub(super) fn panicked(&self, job: &Job, panic: &str) -> Entry {
-        self.failed(job, bug(&job.input.display().to_string(), panic))
+        }
     }
 }

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use neurotess::batch;
 use neurotess::drawing::{Host, MeshedCell, Work};
 use neurotess::formats::{Read, ReadOptions};
 
-use crate::io::morphologies::read_morphology;
 use crate::io::workers;
 use crate::report::{Failure, Progress, Reporter, bug};
 
@@ -32,7 +32,7 @@ impl Host for Reporter {
     }
 
     fn read(&self, file: &Path, options: &ReadOptions) -> Result<Read, String> {
-        read_morphology(file, None, options).map_err(|failure| failure.0)
+        batch::read(file, None, options).map_err(|e| e.to_string())
     }
 
     fn each(&self, files: &[PathBuf], work: Work<'_>) -> Vec<Result<MeshedCell, String>> {

@@ -12,14 +12,14 @@ mod stats;
 
 use std::io;
 
+use neurotess::batch::{Inputs, MORPHOLOGIES};
 use neurotess::drawing::{
     DrawError, DrawOptions, Drawing, OwnData, Scene, open, read_circuit, read_files,
 };
 use neurotess::output::write_into;
 
 use crate::io::circuits::partition;
-use crate::io::inputs::Inputs;
-use crate::io::morphologies::MORPHOLOGIES;
+use crate::io::inputs;
 use crate::io::output;
 use crate::report::{Progress, Reporter, Usage, count, usage};
 pub(crate) use args::RenderArgs;
@@ -106,9 +106,9 @@ pub(crate) fn read_scene(
     let read = match &circuits[..] {
         [path] if others.is_empty() => read_circuit(path, options, reporter),
         [] => {
-            let inputs = Inputs::find(inputs, &MORPHOLOGIES);
-            inputs.tell(reporter);
-            let files = inputs.files.into_iter().map(|input| input.path);
+            let found = Inputs::find(inputs, &MORPHOLOGIES);
+            inputs::tell(&found, reporter);
+            let files = found.files.into_iter().map(|input| input.path);
             read_files(&files.collect::<Vec<_>>(), options, reporter)
         }
         _ => return usage("a circuit is drawn alone: leave out the other inputs"),

@@ -168,7 +168,7 @@ struct Job<'a> {
     options: &'a MeshOptions,
     seen_from: &'a SeenFrom,
     progress: &'a Progress,
-    /// Whether its blocks are counted, since there are no other cells to count.
+    /// Whether its steps are counted, since there are no other cells to count.
     is_alone: bool,
 }
 
@@ -264,7 +264,7 @@ impl Job<'_> {
             Stage::Merge => "merging what crosses",
             _ => "",
         });
-        if self.is_alone && told.stage == Stage::Write {
+        if self.is_alone {
             self.progress.all.store(told.all, Ordering::Relaxed);
             self.progress.done.store(told.done, Ordering::Relaxed);
         }

@@ -58,7 +58,7 @@ impl Viewer {
                     height: self.stage.height(),
                 };
                 let progress = match plans.len() {
-                    1 => Progress::new("saving the mesh", "blocks", 0),
+                    1 => Progress::new("saving the mesh", "steps", 0),
                     several => Progress::new("saving meshes", "meshes", several),
                 };
                 self.worker.save(progress, move |progress| {

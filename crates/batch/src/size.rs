@@ -1,67 +1,95 @@
 //! How large a file will be, before it is written.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use neurotess::mesh::{Format, Surface};
-use neurotess::output::temporary_folder;
-use neurotess::recipe::memory;
+use neurotess_mesh::{Format, Surface};
+use neurotess_output::temporary_folder;
+use neurotess_recipe::memory::{self, TooLittleMemory};
+use neurotess_recipe::{MeshOption, Spelling};
 
-use crate::io::output::is_standard;
-use crate::report::{Failure, Reporter};
+use crate::standard::is_standard;
 
-/// Size (bytes) from which on it is reported beforehand.
+/// Size (bytes) from which on it is told beforehand.
 const LARGE: u64 = 1 << 30;
 
 /// Bytes of a vertex whose place is kept.
 const BYTES_OF_CORNER: u64 = 12;
 
-/// Reports that a file will be large.
-///
-/// # Errors
-/// The disk has too little room for it.
-pub(super) fn tell(
+/// A file that will be large.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LargeFile {
+    /// The file.
+    pub out: PathBuf,
+    /// What it will have, about.
+    pub bytes: u64,
+    /// Number of its faces.
+    pub faces: usize,
+}
+
+/// Why there is no room for a file.
+pub(crate) enum Crowded {
+    /// In memory.
+    Memory(TooLittleMemory),
+    /// On the disk: bytes that are free, and where.
+    Disk {
+        bytes: u64,
+        free: u64,
+        folder: PathBuf,
+    },
+}
+
+impl LargeFile {
+    /// What it is, and what to do, with options named as whoever set them wrote them.
+    pub fn told(&self, spelling: Spelling) -> String {
+        format!(
+            "{} will have about {} ({} faces): a lower {} or {} makes it smaller",
+            self.out.display(),
+            gigabytes(self.bytes),
+            self.faces,
+            MeshOption::Level.spelled(spelling),
+            MeshOption::MaxError.spelled(spelling)
+        )
+    }
+}
+
+/// Whether there is room for a file, and what is to be said of it.
+pub(crate) fn check(
     surface: &dyn Surface,
     format: Format,
     out: &Path,
-    reporter: &Reporter,
-) -> Result<(), Failure> {
+) -> Result<Option<LargeFile>, Crowded> {
     if format == Format::Stl {
         // Its faces hold corners, so that all of these are in memory.
         let needed = (surface.vertex_count() as u64).saturating_mul(BYTES_OF_CORNER);
-        memory::check(needed)
-            .map_err(|e| Failure(format!("{e}: choose a lower --level, or write ply")))?;
+        memory::check(needed).map_err(Crowded::Memory)?;
     }
     let bytes = estimate(surface, format);
     if bytes < LARGE {
-        return Ok(());
+        return Ok(None);
     }
     // What standard output gets at the end is in a temporary file until then.
     let temporary = temporary_folder();
-    let (folder, remedy) = match is_standard(out) {
-        true => (&*temporary, "set TMPDIR to a folder with more room"),
-        false => (folder_of(out), "another disk"),
+    let folder = match is_standard(out) {
+        true => &*temporary,
+        false => folder_of(out),
     };
-    let out = out.display();
-    let faces = surface.triangle_count() + surface.quad_count();
-    if let Ok(free) = fs4::available_space(folder)
-        && free < bytes
-    {
-        return Err(Failure(format!(
-            "{out} would have about {}, but only {} are free in {}: choose a lower --level, or {remedy}",
-            gigabytes(bytes),
-            gigabytes(free),
-            folder.display()
-        )));
+    match fs4::available_space(folder) {
+        Ok(free) if free < bytes => Err(Crowded::Disk {
+            bytes,
+            free,
+            folder: folder.to_path_buf(),
+        }),
+        _ => Ok(Some(LargeFile {
+            out: out.to_path_buf(),
+            bytes,
+            faces: surface.triangle_count() + surface.quad_count(),
+        })),
     }
-    reporter.warning(&format!(
-        "{out} will have about {} ({faces} faces): a lower --level or --max-error makes it smaller",
-        gigabytes(bytes)
-    ));
-    Ok(())
 }
 
 /// Estimates the bytes of a file, within some tenths, since numbers in text have different lengths.
-pub(super) fn estimate(surface: &dyn Surface, format: Format) -> u64 {
+fn estimate(surface: &dyn Surface, format: Format) -> u64 {
     let [vertices, triangles, quads] = [
         surface.vertex_count(),
         surface.triangle_count(),
@@ -93,16 +121,17 @@ fn folder_of(out: &Path) -> &Path {
     }
 }
 
-fn gigabytes(bytes: u64) -> String {
+/// Bytes as text.
+pub(crate) fn gigabytes(bytes: u64) -> String {
     format!("{:.1} GB", bytes as f64 / 1e9)
 }
 
 #[cfg(test)]
 mod tests {
-    use neurotess::generate::{GenerateOptions, generate};
-    use neurotess::mesh::write;
-    use neurotess::refine::{LodCriterion, RefineOptions, Refinement};
-    use neurotess::synth::{Kind, Options, grow};
+    use neurotess_generate::{GenerateOptions, generate};
+    use neurotess_mesh::write;
+    use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
+    use neurotess_synth::{Kind, Options, grow};
 
     use super::*;
 

@@ -1,4 +1,4 @@
-//! The record of what a folder's files were made from, by which --resume knows which are up to
+//! The record of what a folder's files were made from, by which a later run knows which are up to
 //! date.
 //!
 //! ```text
@@ -6,9 +6,7 @@
 //! ```
 //!
 //! **Theory.** A file is up to date if it is the one that was recorded (length and time), was made
-//! with the same options (a hash), and its inputs are those that were read (names, lengths and times).
-//! Options that do not change the file, like --threads, are not in the hash; the number of `recipe::MESHES` is, which
-//! is raised when meshes change.
+//! with the same options (the hash of a [`Key`]), and its inputs are those that were read (names, lengths and times).
 //!
 //! **Practice.** The line is appended before the file gets its name: a run that is killed between
 //! the two leaves a line without a file, never a file with a line of other options. Lines of
@@ -23,66 +21,18 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::UNIX_EPOCH;
 
-use neurotess::formats;
-use neurotess::output::{OutputError, append_own, own_file};
+use neurotess_output::{OutputError, append_own, own_file};
 use serde::{Deserialize, Serialize};
 
-use super::targets::Job;
+use crate::key::Key;
+use crate::stamp::Stamp;
+use crate::targets::Job;
 
 /// Name of the record.
-pub(crate) const NAME: &str = ".neurotess-made";
+const NAME: &str = ".neurotess-made";
 /// What every line begins with.
 const BEGIN: &[u8] = b"{\"out\":";
-
-/// Length and time, by which a file is distinguished from another one of the same name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Stamp {
-    bytes: u64,
-    /// Nanoseconds since 1970.
-    modified: u64,
-}
-
-impl Stamp {
-    /// None if there is no such file.
-    pub(crate) fn of(path: &Path) -> Option<Self> {
-        fs::metadata(path).ok().and_then(|data| Self::new(&data))
-    }
-
-    /// Of each file that an output is made of, in the order of the job; none if one is missing.
-    pub(crate) fn of_inputs(job: &Job) -> Option<Vec<Self>> {
-        let first = formats::member(&job.input).0;
-        let further = job.further.iter().map(PathBuf::as_path);
-        std::iter::once(first)
-            .chain(further)
-            .map(Self::of)
-            .collect()
-    }
-
-    /// Of several files as one: all bytes, and the latest time. None if one is missing.
-    fn of_all(paths: &[PathBuf]) -> Option<Self> {
-        let none = Self {
-            bytes: 0,
-            modified: 0,
-        };
-        paths.iter().try_fold(none, |all, path| {
-            let one = Self::of(path)?;
-            Some(Self {
-                bytes: all.bytes + one.bytes,
-                modified: all.modified.max(one.modified),
-            })
-        })
-    }
-
-    fn new(data: &fs::Metadata) -> Option<Self> {
-        let since = data.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
-        Some(Self {
-            bytes: data.len(),
-            modified: u64::try_from(since.as_nanos()).ok()?,
-        })
-    }
-}
 
 /// A line of the record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -108,7 +58,8 @@ impl Line {
 
 /// What is known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum OutputState {
+#[non_exhaustive]
+pub enum OutputState {
     /// It does not exist.
     Missing,
     /// It is up to date.
@@ -127,12 +78,12 @@ pub(crate) enum OutputState {
 
 impl OutputState {
     /// Whether it need not be made.
-    pub(crate) fn stays(self) -> bool {
+    pub fn stays(self) -> bool {
         matches!(self, Self::Right | Self::Newer)
     }
 
     /// Whether we made it and it may be replaced.
-    pub(crate) fn is_ours(self) -> bool {
+    pub fn is_ours(self) -> bool {
         matches!(
             self,
             Self::Incomplete | Self::OtherOptions | Self::OtherInput
@@ -143,19 +94,19 @@ impl OutputState {
 /// The record of a folder.
 pub(crate) struct OutputRecord {
     folder: PathBuf,
-    /// Options that files depend on, as text.
-    options: String,
+    /// Options that files depend on.
+    key: Key,
     known: Mutex<HashMap<String, Vec<Line>>>,
     /// The file, which is opened when the first line is written.
     file: Mutex<Option<File>>,
 }
 
 impl OutputRecord {
-    /// Reads the record, if there is one. `options`: all that files depend on, as text.
-    pub(crate) fn open(folder: &Path, options: &str) -> Self {
+    /// Reads the record, if there is one. `key`: all that files depend on.
+    pub(crate) fn open(folder: &Path, key: Key) -> Self {
         let record = Self {
             folder: folder.to_path_buf(),
-            options: options.to_owned(),
+            key,
             known: Mutex::default(),
             file: Mutex::default(),
         };
@@ -198,7 +149,7 @@ impl OutputRecord {
         };
         let incomplete = job.beside.as_ref().is_some_and(|beside| !beside.exists());
         match lines.rev().find(is_that) {
-            Some(line) if line.options != self.hash(job) => OutputState::OtherOptions,
+            Some(line) if line.options != self.key.hash(job) => OutputState::OtherOptions,
             Some(line) if !of.as_ref().is_some_and(|of| line.is_of(of)) => OutputState::OtherInput,
             Some(_) if incomplete => OutputState::Incomplete,
             Some(_) => OutputState::Right,
@@ -235,7 +186,7 @@ impl OutputRecord {
         let line = Line {
             out: self.name(&job.out),
             is,
-            options: self.hash(job),
+            options: self.key.hash(job),
             of: *of,
             further: further.to_vec(),
             parts: parts.map(|(out, _)| self.name(out)).collect(),
@@ -264,45 +215,31 @@ impl OutputRecord {
         }
     }
 
-    /// Hash of all that the file depends on, apart from what its inputs hold, in hexadecimal.
-    fn hash(&self, job: &Job) -> String {
-        // A folder may move with its outputs, so that only names are compared.
-        let inputs = std::iter::once(&job.input).chain(&job.further);
-        let names: Vec<_> = inputs.map(|input| input.file_name()).collect();
-        let text = format!("{} {} {names:?}", self.options, job.placement);
-        format!("{:016x}", hash(&text))
-    }
-
     fn name(&self, out: &Path) -> String {
         let below = out.strip_prefix(&self.folder).unwrap_or(out);
         below.to_string_lossy().into_owned()
     }
 }
 
-/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): the same in all versions, unlike the standard
-/// library's.
-fn hash(text: &str) -> u64 {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
-}
-
 #[cfg(test)]
 mod tests {
+    use neurotess_mesh::Format;
+    use neurotess_recipe::{FileOptions, MeshOptions};
+
     use super::*;
+
+    fn opened(folder: &Path, level: u32) -> OutputRecord {
+        let options = MeshOptions::default().with_level(level);
+        let key = Key::new(&options, &FileOptions::new(Format::Ply)).expect("a key");
+        OutputRecord::open(folder, key)
+    }
 
     #[test]
     fn a_file_is_right_only_as_it_was_recorded() {
         let folder = tempfile::tempdir().expect("a folder");
-        let job = Job {
-            input: folder.path().join("a.swc"),
-            out: folder.path().join("a.ply"),
-            placement: String::new(),
-            further: Vec::new(),
-            beside: None,
-            parts: false,
-        };
+        let job = Job::new(folder.path().join("a.swc"), folder.path().join("a.ply"));
         fs::write(&job.input, "in").expect("written");
-        let record = OutputRecord::open(folder.path(), "level 1");
+        let record = opened(folder.path(), 1);
         assert_eq!(record.state_of(&job), OutputState::Missing);
         fs::write(&job.out, "mesh").expect("written");
         assert_eq!(record.state_of(&job), OutputState::Newer);
@@ -318,7 +255,7 @@ mod tests {
         file.write_all(b"{\"out\":\"a.p\n").expect("written");
         record.read();
         assert_eq!(record.state_of(&job), OutputState::Right);
-        let other = OutputRecord::open(folder.path(), "level 2");
+        let other = opened(folder.path(), 2);
         assert_eq!(other.state_of(&job), OutputState::OtherOptions);
         fs::write(&job.input, "another").expect("written");
         assert_eq!(record.state_of(&job), OutputState::OtherInput);
@@ -328,18 +265,12 @@ mod tests {
     fn parts_are_right_together_and_with_what_is_beside_them() {
         let folder = tempfile::tempdir().expect("a folder");
         let at = |name: &str| folder.path().join(name);
-        let mut job = Job {
-            input: at("a.swc"),
-            out: at("a.obj"),
-            placement: String::new(),
-            further: Vec::new(),
-            beside: Some(at("a.mtl")),
-            parts: true,
-        };
+        let mut job = Job::new(at("a.swc"), at("a.obj"));
+        (job.beside, job.parts) = (Some(at("a.mtl")), true);
         for name in ["a.swc", "a.mtl", "a_soma.obj", "a_axon.obj"] {
             fs::write(at(name), name).expect("written");
         }
-        let record = OutputRecord::open(folder.path(), "level 1");
+        let record = opened(folder.path(), 1);
         assert_eq!(record.state_of(&job), OutputState::Missing);
         let parts = ["a_soma.obj", "a_axon.obj"].map(at);
         let made = parts.each_ref().map(|part| (&**part, &**part));
@@ -357,11 +288,5 @@ mod tests {
         job.parts = false;
         fs::write(&job.out, "whole").expect("written");
         assert_eq!(record.state_of(&job), OutputState::Newer);
-    }
-
-    #[test]
-    fn the_hash_is_the_published_one() {
-        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
     }
 }

@@ -3,10 +3,12 @@
 
 use std::time::Duration;
 
-use super::output::{Output, OutputError, begin};
-use super::record::{OutputRecord, Stamp};
-use super::targets::Job;
-use crate::report::Reporter;
+use neurotess_output::{Existing, Output, OutputError};
+
+use crate::record::OutputRecord;
+use crate::stamp::Stamp;
+use crate::standard::begin;
+use crate::targets::Job;
 
 /// Time between checks whether another run is done.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -17,32 +19,43 @@ pub(crate) enum Claim {
     Ours(Claimed),
     /// Keep it: another run has written it meanwhile.
     Done,
+    /// Leave it: another thread stopped the work while it waited.
+    Stopped,
 }
 
 /// What may be written.
 pub(crate) struct Claimed {
     /// The file; one that is written in parts only holds its name meanwhile.
     pub(crate) output: Output,
-    /// Whether files that belong to it may be replaced.
-    pub(crate) replace: bool,
+    /// What becomes of files that belong to it.
+    pub(crate) existing: Existing,
 }
 
-/// Claims an output. With `--resume` (`made` and `resume`), waits for another run that has claimed
-/// it, and replaces outputs of ours that were made with other options or from another input.
+/// Who waits for another run.
+pub(crate) struct Waiting<'w> {
+    /// Told once.
+    pub(crate) tell: &'w dyn Fn(),
+    /// Whether to wait no longer.
+    pub(crate) is_stopped: &'w dyn Fn() -> bool,
+}
+
+/// Claims an output. With the record of a run that resumes, waits for another run that has claimed it, and replaces outputs
+/// of ours that were made with other options or from another input.
 pub(crate) fn claim(
     job: &Job,
-    force: bool,
+    existing: Existing,
     resume: Option<&OutputRecord>,
-    reporter: &Reporter,
+    waiting: &Waiting<'_>,
 ) -> Result<Claim, OutputError> {
-    let Some(record) = resume else {
-        let output = begin(&job.out, force || job.parts)?;
-        return Ok(Claim::Ours(Claimed {
-            output,
-            replace: force,
-        }));
+    let or_replace = |replace: bool| match replace {
+        true => Existing::Replace,
+        false => existing,
     };
-    let mut announced = false;
+    let Some(record) = resume else {
+        let output = begin(&job.out, or_replace(job.parts))?;
+        return Ok(Claim::Ours(Claimed { output, existing }));
+    };
+    let mut told = false;
     loop {
         let before = Stamp::of(&job.out);
         let mut state = record.state_of(job);
@@ -54,7 +67,7 @@ pub(crate) fn claim(
         if state.stays() {
             return Ok(Claim::Done);
         }
-        match begin(&job.out, force || job.parts || state.is_ours()) {
+        match begin(&job.out, or_replace(job.parts || state.is_ours())) {
             Ok(output) if Stamp::of(&job.out) == before => {
                 if job.parts {
                     // The name tells nothing of parts that another run has finished meanwhile.
@@ -63,18 +76,20 @@ pub(crate) fn claim(
                         return Ok(Claim::Done);
                     }
                 }
-                let replace = force || state.is_ours() || record.knows(job);
-                return Ok(Claim::Ours(Claimed { output, replace }));
+                let existing = or_replace(state.is_ours() || record.knows(job));
+                return Ok(Claim::Ours(Claimed { output, existing }));
             }
             // It was finished between the check and the claim.
             Ok(_) => {}
-            Err(OutputError::Taken { path }) => {
-                if !announced {
-                    let path = path.display();
-                    reporter.note(&format!("{path} is being written by another run: waiting"));
-                    announced = true;
+            Err(OutputError::Taken { .. }) => {
+                if !told {
+                    (waiting.tell)();
+                    told = true;
                 }
                 std::thread::sleep(PATIENCE);
+                if (waiting.is_stopped)() {
+                    return Ok(Claim::Stopped);
+                }
             }
             Err(e) => return Err(e),
         }

@@ -1,4 +1,4 @@
-//! `--areas`: a row for each section, with the area of its traced frusta, what shows of them, and that on the mesh.
+//! A row for each section, with the area of its traced frusta, what shows of them, and that on the mesh.
 //!
 //! Stems and caps are no part of any frustum. Their faces have the labels of sections, and are told apart here by where
 //! they are.
@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
-use neurotess::mesh::{Surface, WriteError, areas_by};
-use neurotess::morphology::{
+use neurotess_mesh::{Surface, WriteError, areas_by};
+use neurotess_morphology::{
     Attachment, Morphology, SectionEnds, SectionPart, exposed_areas, shape, soma_area_volume,
 };
 

@@ -1,4 +1,4 @@
-//! `--table`: a row for each triangle, with where on the tracing it is.
+//! A row for each triangle, with where on the tracing it is.
 //!
 //! A triangle has a sample and a section by the rule of all files ([`FaceLabel`]). Its place is where
 //! its center falls on the traced line of the section, as share of the length of the line: 0 at its
@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use std::io::{self, Seek, Write};
 
 use glam::DVec3;
-use neurotess::mesh::{FaceLabel, Surface, SurfaceTriangle, WriteError, write_triangles};
-use neurotess::morphology::{Attachment, Morphology, SampleLabels};
+use neurotess_mesh::{FaceLabel, Surface, SurfaceTriangle, WriteError, write_triangles};
+use neurotess_morphology::{Attachment, Morphology, SampleLabels};
 
 const HEADER: &str = "triangle,sample,section,position,type\n";
 

@@ -7,50 +7,82 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use neurotess::formats;
+use neurotess_formats as formats;
 
-use super::inputs::{Input, Inputs};
-use super::output::is_standard;
-use crate::report::usage;
+use crate::inputs::{Input, Inputs};
+use crate::standard::is_standard;
 
 /// A file and what it becomes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Job {
+#[non_exhaustive]
+pub struct Job {
     /// The file to read.
-    pub(crate) input: PathBuf,
+    pub input: PathBuf,
     /// The file to write.
-    pub(crate) out: PathBuf,
+    pub out: PathBuf,
     /// The instance of a circuit with its placement, as text; empty for a file.
-    pub(crate) placement: String,
+    pub placement: String,
     /// Files that it is made of besides `input`.
-    pub(crate) further: Vec<PathBuf>,
+    pub further: Vec<PathBuf>,
     /// A file that is written beside it, without which it is not complete.
-    pub(crate) beside: Option<PathBuf>,
+    pub beside: Option<PathBuf>,
     /// Whether `out` is not itself written, but files named after it, one for each type.
-    pub(crate) parts: bool,
+    pub parts: bool,
+}
+
+impl Job {
+    /// One file becomes one file.
+    pub fn new(input: PathBuf, out: PathBuf) -> Self {
+        Self {
+            input,
+            out,
+            placement: String::new(),
+            further: Vec::new(),
+            beside: None,
+            parts: false,
+        }
+    }
+}
+
+/// Why inputs cannot become the files that are asked for.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TargetError {
+    /// Several inputs for standard output.
+    #[error("standard output takes one file, but there are several inputs: give a folder")]
+    Standard,
+    /// A file is where the folder is to be.
+    #[error("{} is a file, but several inputs need a folder: give another OUT", .0.display())]
+    NotAFolder(PathBuf),
+    /// Two inputs would become one file.
+    #[error(
+        "{} and {} would both become {}: give their common folder, or run them apart",
+        inputs[0].display(), inputs[1].display(), out.display()
+    )]
+    Collide {
+        /// The inputs.
+        inputs: [PathBuf; 2],
+        /// The file.
+        out: PathBuf,
+    },
 }
 
 /// Whether OUT is a folder: for anything but a single file, and if it already is one.
-pub(crate) fn is_folder(out: &Path, inputs: &Inputs) -> bool {
+pub fn is_folder(out: &Path, inputs: &Inputs) -> bool {
     !inputs.one_file || !is_standard(out) && (out.is_dir() || ends_in_separator(out))
 }
 
 /// One job per input; `extension` is that of files in a folder.
 ///
 /// # Errors
-/// Wrong usage: two inputs would become one file.
-pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Result<Vec<Job>> {
+/// Two inputs would become one file, or there is no folder for several.
+pub fn plan(inputs: &Inputs, out: &Path, extension: &str) -> Result<Vec<Job>, TargetError> {
     let folder = is_folder(out, inputs);
     if folder && is_standard(out) {
-        return usage(
-            "standard output takes one file, but there are several inputs: give a folder",
-        );
+        return Err(TargetError::Standard);
     }
     if folder && out.is_file() {
-        return usage(format!(
-            "{} is a file, but several inputs need a folder: give another OUT",
-            out.display()
-        ));
+        return Err(TargetError::NotAFolder(out.to_path_buf()));
     }
     let mut taken: BTreeMap<PathBuf, &Path> = BTreeMap::new();
     let mut jobs = Vec::with_capacity(inputs.files.len());
@@ -61,21 +93,12 @@ pub(crate) fn plan(inputs: &Inputs, out: &Path, extension: &str) -> anyhow::Resu
             out.to_path_buf()
         };
         if let Some(other) = taken.insert(target.clone(), path) {
-            return usage(format!(
-                "{} and {} would both become {}: give their common folder, or run them apart",
-                other.display(),
-                path.display(),
-                target.display()
-            ));
+            return Err(TargetError::Collide {
+                inputs: [other.to_path_buf(), path.clone()],
+                out: target,
+            });
         }
-        jobs.push(Job {
-            input: path.clone(),
-            out: target,
-            placement: String::new(),
-            further: Vec::new(),
-            beside: None,
-            parts: false,
-        });
+        jobs.push(Job::new(path.clone(), target));
     }
     Ok(jobs)
 }
@@ -91,16 +114,6 @@ fn ends_in_separator(path: &Path) -> bool {
         .is_some_and(|&byte| std::path::is_separator(char::from(byte)))
 }
 
-/// Indices of the jobs, those with the largest files first, so that none of them comes last and
-/// keeps one core busy while the others wait.
-pub(crate) fn largest_first(jobs: &[Job]) -> Vec<usize> {
-    let size =
-        |job: &Job| std::fs::metadata(formats::member(&job.input).0).map_or(0, |data| data.len());
-    let mut order: Vec<(u64, usize)> = jobs.iter().map(size).zip(0..).collect();
-    order.sort_by_key(|&(size, index)| (std::cmp::Reverse(size), index));
-    order.into_iter().map(|(_, index)| index).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,7 +125,7 @@ mod tests {
         };
         Inputs {
             files: relatives.iter().map(input).collect(),
-            failures: vec![],
+            not_found: vec![],
             one_file,
             others: 0,
         }
