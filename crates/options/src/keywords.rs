@@ -207,3 +207,120 @@ fn needed(message: &str) -> String {
     let names: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
     one_of(&names)
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// A value for each option that is not its default, in two forms.
+    fn values() -> Vec<(&'static str, Value, Value)> {
+        vec![
+            ("size", json!([640, 480]), json!("640x480")),
+            ("samples", json!(4), json!("4")),
+            ("scale_bar", json!(true), json!("fit")),
+            ("least_width", json!(2), json!("2.0")),
+            ("light", json!([-1, 1, 1]), json!("-1,1,1")),
+            ("ao", json!(0), json!("0")),
+            ("range", json!([-80, 30.5]), json!("-80,30.5")),
+            (
+                "set_color",
+                json!({ "axon": "#ff8800" }),
+                json!("axon=#ff8800"),
+            ),
+            ("ring", json!({ "2": 0.5 }), json!(["2=0.5"])),
+            ("types", json!(["axon", 3]), json!(["axon", "3"])),
+            ("eye", json!([0, 20, 80]), json!("0,20,80")),
+            ("time", json!(14.5), json!("14.5")),
+            ("level", json!(3), json!("3")),
+            ("synapses", json!(true), json!("all")),
+            ("marker_size", json!(2), json!("2")),
+            ("mesh", json!(["a.obj,fit"]), json!("a.obj,fit")),
+            ("nodes", json!([0, 5, "10-19"]), json!("0,5,10-19")),
+            (
+                "region",
+                json!([[0, 0, 0], [1, 2, 3]]),
+                json!("0,0,0,1,2,3"),
+            ),
+        ]
+    }
+
+    #[test]
+    fn numbers_lists_and_texts_are_the_same_and_come_back() {
+        for (name, list, text) in values() {
+            let of = |value: &Value| {
+                let mut picture = Picture::default();
+                picture.set(name, value).expect(name);
+                picture
+            };
+            let picture = of(&list);
+            assert_eq!(picture, of(&text), "{name}");
+            assert_ne!(picture, Picture::default(), "{name}");
+            let json = picture.to_json();
+            assert_eq!(Picture::from_json(&json), Ok(picture.clone()), "{json}");
+            let names = [name.to_owned()];
+            assert_eq!(Picture::default().with(&picture, &names), picture);
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_says_the_option_and_what_is_possible() {
+        for (name, value, told) in [
+            (
+                "size",
+                json!([640]),
+                "size=640: width x height is needed, 1 to 32768, as in 1280x960",
+            ),
+            (
+                "color_by",
+                json!("depht"),
+                "color_by=depht: use type, neurite, section, order, radius, depth, neuron or value",
+            ),
+            (
+                "samples",
+                json!(65),
+                "samples=65: a whole number from 1 to 64 is needed",
+            ),
+            (
+                "wireframe",
+                json!(3),
+                "wireframe=3: true or false is needed",
+            ),
+            (
+                "eye",
+                json!([0, 1]),
+                "eye=0,1: three numbers X,Y,Z are needed, as in 0,20,80",
+            ),
+            (
+                "colour-map",
+                json!("jet"),
+                "there is no option 'colour-map': did you mean 'colormap'?",
+            ),
+            ("zzz", json!(1), "there is no option 'zzz'"),
+        ] {
+            let error = Picture::default().set(name, &value).expect_err(name);
+            assert_eq!(error.to_string(), told);
+        }
+        for (json, told) in [
+            (
+                json!({ "looks": {} }),
+                "there is no option 'looks': did you mean 'look'?",
+            ),
+            (
+                json!({ "look": { "color_by": "type" } }),
+                "there is no option 'color_by'",
+            ),
+            (json!({ "look": 3 }), "look=3: options by name are needed"),
+            (
+                json!([]),
+                "a picture=: options by group are needed, as in {\"look\": {\"size\": \"640x480\"}}",
+            ),
+        ] {
+            assert_eq!(
+                Picture::from_json(&json).expect_err("wrong").to_string(),
+                told
+            );
+        }
+    }
+}

@@ -18,13 +18,11 @@ pub enum ColorWhat {
     /// Neighboring sections differ
     Section,
     /// Number of forks from the neurite's start
-    #[serde(alias = "branch-order")]
     #[cfg_attr(feature = "clap", value(alias = "branch-order"))]
     Order,
     /// Radius (µm)
     Radius,
     /// Distance along the neurite from its start (µm)
-    #[serde(alias = "path-distance")]
     #[cfg_attr(feature = "clap", value(alias = "path-distance"))]
     Depth,
     /// Every input its own, and every cell of a circuit

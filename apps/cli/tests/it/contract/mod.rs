@@ -17,6 +17,8 @@ mod kill;
 mod markers;
 mod mesh;
 mod meshes;
+#[cfg(feature = "gpu")]
+mod options;
 mod palettes;
 mod parts;
 mod render;

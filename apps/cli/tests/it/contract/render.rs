@@ -6,7 +6,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::needs::{gpu, mesa_opengl};
-use crate::work::{BROKEN, Run, SMALL, Work};
+use crate::work::{BROKEN, Run, SMALL, Work, long_cell};
 
 /// A picture: width, height, samples of a pixel, bytes.
 pub(crate) struct Picture {
@@ -546,4 +546,56 @@ fn the_library_draws_the_same_picture() {
     assert_eq!(ours.size, theirs.size);
     assert!(ours.pixels == theirs.pixels);
     assert!(neurotess::draw(&[], &options).is_err());
+}
+
+#[neurotess_testing::test]
+fn a_picture_tells_how_it_was_made_and_others_are_drawn_like_it() {
+    let work = Work::new();
+    let cells = [
+        ("cell.swc", SMALL.to_owned()),
+        ("other.swc", long_cell(300)),
+    ];
+    for (name, content) in cells {
+        work.file(name, content);
+    }
+    work.file("colors/mine.csv", "x,y,z\n1,2,3\n");
+    let options = "--size 120x90 --samples 1 --view iso --color-by depth --colormap magma --axes --background black \
+                   --points colors/mine.csv --least-width 0";
+    work.run(&format!("render cell.swc -o figure.png {options}"))
+        .exits(0);
+    let told = work.files(".")[&work.path("figure.png")].clone();
+    let told = String::from_utf8_lossy(&told).into_owned();
+    assert!(
+        told.contains("\"points\":\"mine.csv\"") && !told.contains("colors/"),
+        "names, no folders"
+    );
+    // Points are files of one's own: they are named again. Of the colors, only one is another.
+    let again = "--like figure.png --points colors/mine.csv --colormap viridis";
+    work.run(&format!("render other.swc -o like.png {again}"))
+        .exits(0);
+    let direct = format!("{options} --colormap viridis").replace("--colormap magma", "");
+    work.run(&format!("render other.swc -o direct.png {direct}"))
+        .exits(0);
+    let [like, direct] =
+        ["like.png", "direct.png"].map(|name| work.files(".")[&work.path(name)].clone());
+    assert!(like == direct, "with the same text, too");
+    work.run("render cell.swc -o plain.png --no-recipe --size 40x30")
+        .exits(0);
+    let run = work
+        .run("render cell.swc -o x.png --like plain.png")
+        .exits(1);
+    assert!(
+        run.stderr()
+            .contains("plain.png: does not tell how it was made"),
+        "{}",
+        run.stderr()
+    );
+    let run = work
+        .run("render cell.swc -o x.png --like cell.swc")
+        .exits(1);
+    assert!(
+        run.stderr().contains("cell.swc: no PNG file"),
+        "{}",
+        run.stderr()
+    );
 }
