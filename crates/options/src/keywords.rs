@@ -21,7 +21,7 @@ impl Picture {
                 .into_iter()
                 .map(move |(name, _)| (name, group.clone()))
         });
-        let times = ("times".to_owned(), "camera".to_owned());
+        let times = ("picture_times".to_owned(), "camera".to_owned());
         groups.chain([times]).collect()
     }
 

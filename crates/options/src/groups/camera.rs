@@ -98,7 +98,7 @@ pub struct CameraOptions {
     /// Times (ms) of all pictures instead of `time`: of programs that have their own.
     #[cfg_attr(feature = "clap", arg(skip))]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub times: Option<Vec<f64>>,
+    pub picture_times: Option<Vec<f64>>,
 }
 
 impl Default for CameraOptions {
@@ -114,7 +114,7 @@ impl Default for CameraOptions {
             turntable: false,
             frames: None,
             time: None,
-            times: None,
+            picture_times: None,
         }
     }
 }
@@ -137,7 +137,7 @@ impl CameraOptions {
     /// # Errors
     /// `frames` without a series, or a series in time that has no number of pictures or too many.
     pub fn series(&self) -> Result<Option<u32>, OptionError> {
-        if let Some(times) = &self.times {
+        if let Some(times) = &self.picture_times {
             return match u32::try_from(times.len()) {
                 Ok(count) if count <= MOST_PICTURES => Ok(Some(count)),
                 _ => Err(OptionError::together(format!(
@@ -163,7 +163,7 @@ impl CameraOptions {
     /// A series that has no number of pictures, or too many.
     pub fn all_times(&self) -> Result<Option<Vec<f64>>, OptionError> {
         let frames = self.frames.map(|frames| frames.0);
-        match (&self.times, self.time) {
+        match (&self.picture_times, self.time) {
             (Some(times), _) => Ok(Some(times.clone())),
             (None, Some(time)) => time.all(frames).map(Some),
             (None, None) => Ok(None),
