@@ -43,6 +43,27 @@ def test_folders_and_single_cells_are_batches(samples: Path, tmp_path: Path) -> 
         nt.mesh_many(tmp_path / "empty")
 
 
+def test_files_become_files_and_stay_while_they_are_up_to_date(samples: Path, tmp_path: Path) -> None:
+    cells, meshes = tmp_path / "cells", tmp_path / "meshes"
+    (cells / "sub").mkdir(parents=True)
+    (cells / "star.swc").write_bytes((samples / "star.swc").read_bytes())
+    (cells / "sub/granule.swc").write_bytes((samples / "granule.swc").read_bytes())
+    (cells / "bad.swc").write_text("1 1 0 0 zero 5 -1\n")
+    bad, star, granule = nt.mesh_all(cells, meshes, format="off", level=1, threads=2)
+    assert "bad.swc:1: " in bad["error"] and star["closed"] and granule["warnings"] is not None
+    made = sorted(path.relative_to(meshes).as_posix() for path in meshes.rglob("*.off"))
+    assert made == ["star.off", "sub/granule.off"]
+    _, star, granule = nt.mesh_all(cells, meshes, format="off", level=1, resume=True)
+    assert star["skipped"] and granule["skipped"]
+    _, star, _ = nt.mesh_all(cells, meshes, format="off", level=1)
+    assert "resume=True" in star["error"]
+    [one] = nt.mesh_all(str(cells / "*.swc"), meshes, format="off", level=1, overwrite=True, shard=(2, 2))
+    assert one["file"].endswith("star.swc") and one["closed"]
+    for wrong in ({"format": "doc"}, {"shard": (3, 2)}, {"threads": 0}, {"level": 100}):
+        with pytest.raises(ValueError):
+            nt.mesh_all(cells, meshes, **wrong)
+
+
 def test_any_number_of_threads_gives_the_same() -> None:
     cells = [nt.synth("granule", seed=seed, points=80) for seed in range(6)]
     one = [result.mesh for result in nt.mesh_many(cells, threads=1, level=2)]
@@ -119,6 +140,7 @@ LONG_WORK = {
     "separate": "nt.mesh(cell, crossings='separate', level=1)",
     "merge": "nt.mesh(cell, crossings='merge', level=8, types='axon,dendrite')",
     "mesh_many": "list(nt.mesh_many([cell] * 50, threads=2, level=4))",
+    "mesh_all": "cell.save('cell.swc'); nt.mesh_all('cell.swc', 'meshes', crossings='separate', level=1)",
     "render": "nt.render(cell, size=(8000, 8000), samples=64)",
 }
 #: Samples of the cell, where 100,000 are too many or too soon done.
@@ -127,7 +149,7 @@ POINTS = {"render": 3000, "mesh": 2_000_000}
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
 @pytest.mark.parametrize("work", LONG_WORK)
-def test_interrupts_stop_the_work(work: str) -> None:
+def test_interrupts_stop_the_work(work: str, tmp_path: Path) -> None:
     code = f"""
         import os, signal, time, neurotess as nt
         # Where the tests run in the background, it is ignored.
@@ -152,7 +174,7 @@ def test_interrupts_stop_the_work(work: str) -> None:
         print("done", flush=True)
     """
     command = [sys.executable, "-c", textwrap.dedent(code)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "begin\n"
         time.sleep(1.0)
@@ -160,6 +182,8 @@ def test_interrupts_stop_the_work(work: str) -> None:
         assert process.stdout.readline() == "interrupted\n"
         # Seconds of the processor until everything was quiet; all of the work would take a minute and more.
         assert float(process.stdout.readline()) < 5
+    # Nothing half-written.
+    assert not [path for path in tmp_path.rglob("*") if path.suffix != ".swc" and path.is_file()]
 
 
 def test_results_that_nobody_wants_are_not_made() -> None:

@@ -14,6 +14,7 @@
 )]
 
 mod arrays;
+mod batch;
 mod cell;
 mod circuit;
 mod command;
@@ -49,6 +50,7 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     picture::add_to(module)?;
     #[cfg(feature = "gpu")]
     page::add_to(module)?;
+    module.add_function(wrap_pyfunction!(batch::mesh_all, module)?)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(cell::allow_large, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)

@@ -14,7 +14,7 @@ leaves the interpreter to other threads, and Ctrl-C stops it.
 | --- | --- |
 | read a tracing, or make one | `read`, `synth`, `Morphology.from_table`, `Morphology.from_navis`, … |
 | mend it, or compare two | `edit`, `diff` |
-| mesh it | `mesh`, `mesh_many`, `Mesh` |
+| mesh it | `mesh`, `mesh_many`, `mesh_all`, `Mesh` |
 | judge a mesh | `Mesh.check`, `check`, `read_mesh` |
 | draw it | `render`, `film`, `Image`, `View` |
 | send it as one HTML page | `html` |
@@ -45,7 +45,7 @@ from ._morphology import Morphology, read, synth
 from ._parts import Neurite, Notice, Section, Soma
 from ._edits import diff, edit
 from ._meshes import Mesh, check, read_mesh
-from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_many
+from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_all, mesh_many
 from ._circuits import Circuit
 from ._reports import Report
 from ._pages import html
@@ -96,6 +96,7 @@ __all__ = [
     "film",
     "html",
     "mesh",
+    "mesh_all",
     "mesh_many",
     "read",
     "read_mesh",

@@ -11,7 +11,7 @@ from ._cells import cell_of, quietly
 from ._errors import NeurotessWarning
 from ._meshes import Mesh
 from ._parts import Notice
-from ._sources import files_of, is_alone
+from ._sources import expanded, files_of, is_alone
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -262,6 +262,49 @@ def mesh_many(
     elif is_alone(cells):
         cells = [cells]
     return _results(cells, recipe, threads or _cores())
+
+
+def mesh_all(
+    inputs: Iterable[str | os.PathLike[str]] | str | os.PathLike[str],
+    folder: str | os.PathLike[str],
+    *,
+    format: str = "ply",
+    resume: bool = False,
+    overwrite: bool = False,
+    shard: tuple[int, int] | None = None,
+    threads: int | None = None,
+    **options: Unpack[MeshOptions],
+) -> list[dict[str, Any]]:
+    """Meshes files into a folder as ``neurotess mesh`` does, with the options of `mesh`.
+
+    `inputs`: a file, a folder (searched recursively), a glob, or several of these. `folder` repeats the structure below that
+    of the inputs. `format`: ``"ply"``, ``"obj"``, ``"stl"``, ``"glb"``, ``"off"``, ``"vtu"``, ``"msh"``, ``"poly"``, …
+
+    - `resume`: leaves files alone that are up to date: of the same inputs and options. Several programs may share the folder
+    - `overwrite`: replaces files that are there; else they are errors
+    - `shard`: ``(3, 8)`` is the third of eight parts of the inputs, for one of eight machines
+    - `threads`: each has one cell in memory; all cores if it is left out
+
+    Gives a dictionary for each input, in their order, as ``neurotess mesh --json``: ``file``, ``out``, ``vertices``,
+    ``warnings``, …; with ``error`` if it failed, which never ends the batch, and with ``skipped`` if it was up to date.
+    Ctrl-C stops the work; no file is left half-written.
+
+    Raises ``ValueError`` for options, and where two inputs would become one file.
+
+    >>> import neurotess as nt, tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> _ = nt.synth("granule", points=100).save(folder + "/cell.swc")
+    >>> [made] = nt.mesh_all(folder, folder + "/meshes", level=1)
+    >>> made["closed"]
+    True
+    """
+    recipe = _options.recipe(options)
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads={threads} is not 1 or more")
+    if isinstance(inputs, (str, os.PathLike)):
+        inputs = [inputs]
+    wanted = {"format": format, "resume": resume, "overwrite": overwrite, "shard": shard, "threads": threads}
+    return _neurotess.mesh_all(recipe, [expanded(path) for path in inputs], expanded(folder), wanted)
 
 
 def _cores() -> int:
