@@ -73,6 +73,10 @@ pub struct TracingPoint {
     /// Of an ordinary point: change of the radius along the path (µm per µm, −1 to 1). The normals of its ring
     /// lean by it, and the radius has this slope there on both sides. 0 for all others.
     pub taper: f32,
+    /// Of an ordinary point or an end: where on the way from the ring before its section begins, in sixteenths, −15 to 15;
+    /// negative where that has a lower number than the section before. 0 where the section is the same: then the sample
+    /// changes half way.
+    pub border: i8,
     /// SWC type of the section.
     pub kind: SwcType,
     /// The sample that it was traced as.

@@ -11,7 +11,7 @@ use crate::{
 /// Fewest bytes of a vertex: position and normal, and a difference.
 const VERTEX: usize = 25;
 /// Fewest bytes of a tracing point.
-const TRACING: usize = 40;
+const TRACING: usize = 41;
 /// Fewest bytes of a patch: its kind and four differences.
 const PATCH: usize = 5;
 
@@ -88,6 +88,7 @@ fn write_point(point: &TracingPoint, before: &TracingPoint, to: &mut ByteWriter)
         role,
         collar,
         taper,
+        border,
         kind,
         sample,
         section,
@@ -97,7 +98,7 @@ fn write_point(point: &TracingPoint, before: &TracingPoint, to: &mut ByteWriter)
     to.vec3(tangent);
     to.f32(collar);
     to.f32(taper);
-    to.raw(&[role as u8]);
+    to.raw(&[role as u8, border.cast_unsigned()]);
     to.difference(kind.0.into(), before.kind.0.into());
     to.difference(sample.0.into(), before.sample.0.into());
     to.difference(section.0.into(), before.section.0.into());
@@ -123,6 +124,7 @@ fn read_point(
             5 => Role::Inset,
             _ => return Err(BytesError::Invalid("a role that is none")),
         },
+        border: from.raw(1)?[0].cast_signed(),
         kind: SwcType(number(from.difference(before.kind.0.into())?)?),
         sample: SampleId(number(from.difference(before.sample.0.into())?)?),
         section: SectionNumber(number(from.difference(before.section.0.into())?)?),
@@ -174,6 +176,7 @@ mod tests {
             role,
             collar: i as f32 / 3.0,
             taper: -0.1 * i as f32,
+            border: 3 - i as i8,
             kind: SwcType(i - 2),
             sample: SampleId(i32::MAX - i),
             section: SectionNumber(i32::MIN + 7 * i),

@@ -6,7 +6,7 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
 
 use crate::decode::{
-    ANCHOR_COLLAR_SHIFT, ANCHOR_TAPER_SHIFT, collar, octahedral, signed16, taper, to_collar,
+    ANCHOR_TAPER_SHIFT, collar, octahedral, signed16, taper, to_collar, to_collar_or_border,
     to_octahedral, to_signed16, to_taper,
 };
 use crate::packer::Packer;
@@ -100,7 +100,7 @@ impl Anchors {
                 x | (y << 16),
                 point.role as u32
                     | (to_taper(point.taper) << ANCHOR_TAPER_SHIFT)
-                    | (to_collar(point.collar) << ANCHOR_COLLAR_SHIFT),
+                    | to_collar_or_border(point),
                 packer.color_key(tracing),
             ]);
             if point.role != Role::Soma {

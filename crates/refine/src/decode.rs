@@ -4,10 +4,10 @@
 //! | --- | --- | --- |
 //! | point | 16 | center in its sphere (3 × 20 bits), radius (16), tangent (18), turn of the ring (10), taper (5 of 9), level (6), color key (10), kind and run (3) |
 //! | taper | ½ | the lowest 4 bits of a point's taper |
-//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, whether it is an inset, and of that the collar (17), of others which corner lies in a crease (2) and how far out (15) |
+//! | shaped ring | 20 | its point (22), level (6), open sides (4); turn (4 × 10) and height (4 × 16) of each corner, whether it is an inset, and of that the collar (17), of others which corner lies in a crease (2), how far out (14), and the border (5) |
 //! | sphere, for 32 points | 20 | center, radius, the most that an edge bends |
 //! | explicit vertex | 12 | offset from its anchor (3 × 16), anchor (16), normal (24), level (8) |
-//! | anchor | 32 | center, reach, radius, tangent, role, taper and collar, color key |
+//! | anchor | 32 | center, reach, radius, tangent, role, taper, collar or border, color key |
 //! | patch of a soma | 6 | four explicit vertices |
 //! | explicit patch | 8 | four explicit vertices, kind |
 //! | cap | 4 | its ring |
@@ -29,7 +29,7 @@
 //! `resident_form_is_within_a_hundredth_of_the_radius`.
 
 use glam::Vec3;
-use neurotess_mesh::Role;
+use neurotess_mesh::{Role, TracingPoint};
 
 /// Number of points whose centers are stored relative to the same sphere.
 pub const POINTS_OF_SPHERE: usize = 32;
@@ -50,19 +50,23 @@ pub const SHAPED_U32S: usize = 5;
 pub(crate) const SHAPED_LEVEL_SHIFT: u32 = 22;
 pub(crate) const SHAPED_OPEN_SHIFT: u32 = 28;
 /// Bit of a shaped ring that is an inset's.
-pub(crate) const SHAPED_INSET: u32 = 1 << 27;
+pub(crate) const SHAPED_INSET: u32 = 1 << 10;
+/// First bit of where a shaped ring's corner lies in a crease.
+pub(crate) const SHAPED_CREASE_SHIFT: u32 = 11;
 /// Bit of a collar that is negative.
 pub(crate) const COLLAR_AGAINST: u32 = 1 << 16;
 /// First bit of the corner of a shaped ring that lies in a crease, after how far out it is.
-pub(crate) const CREASE_CORNER_SHIFT: u32 = 15;
+pub(crate) const CREASE_CORNER_SHIFT: u32 = 14;
 /// Greatest distance of that corner from the center, in radii.
 pub(crate) const MAX_CREASE: f32 = 4.0;
 /// Number of steps of it.
 pub(crate) const CREASE_STEPS: f32 = ((1 << CREASE_CORNER_SHIFT) - 1) as f32;
 /// First bit of an anchor's taper, after its role.
 pub(crate) const ANCHOR_TAPER_SHIFT: u32 = 3;
-/// First bit of an anchor's collar, after its taper.
-pub(crate) const ANCHOR_COLLAR_SHIFT: u32 = 15;
+/// First bit of the collar of an anchor or a shaped ring that is an inset's.
+pub(crate) const COLLAR_SHIFT: u32 = 15;
+/// First bit of the border of any other: the upper bits, so that its sign is theirs.
+pub(crate) const BORDER_SHIFT: u32 = 27;
 /// Greatest height of a shaped ring's corner over its center, in radii.
 pub(crate) const MAX_HEIGHT: f32 = 4.0;
 /// Bit of a point where the tube narrows.
@@ -172,10 +176,18 @@ pub(crate) fn collar(code: u32) -> f32 {
     }
 }
 
-/// The corner of a ring that lies in a crease, and how far (radii) from the center, as 17 bits; 0 for none.
+/// The corner of a ring that lies in a crease, and how far (radii) from the center, as 16 bits; 0 for none.
 pub(crate) fn to_crease(corner: usize, reach: f32) -> u32 {
     let steps = (reach * (CREASE_STEPS / MAX_CREASE) + 0.5).clamp(1.0, CREASE_STEPS);
     ((corner as u32) << CREASE_CORNER_SHIFT) | steps as u32
+}
+
+/// What an anchor or a shaped ring has in its upper bits: the collar of an inset, the border of any other.
+pub(crate) fn to_collar_or_border(point: &TracingPoint) -> u32 {
+    match point.role {
+        Role::Inset => to_collar(point.collar) << COLLAR_SHIFT,
+        _ => (i32::from(point.border) << BORDER_SHIFT).cast_unsigned(),
+    }
 }
 
 /// How far (radii) corner k is from the center.
@@ -260,8 +272,8 @@ pub(crate) struct ShapedRing {
     pub(crate) circle: ImplicitRing,
     pub(crate) turns: [u32; 4],
     pub(crate) heights: [u32; 4],
-    /// Of an inset.
-    pub(crate) collar: u32,
+    /// The collar of an inset, the border of any other, as stored.
+    pub(crate) upper: u32,
     /// Of any other ring: which corner lies in a crease, and how far out.
     pub(crate) crease: u32,
 }
@@ -290,7 +302,7 @@ impl ShapedRing {
         let pair = |k: usize| self.heights[k] | (self.heights[k + 1] << 16);
         [
             a | (b << 10) | (c << 20),
-            d | ((self.collar | self.crease) << 10) | inset,
+            d | inset | (self.crease << SHAPED_CREASE_SHIFT) | self.upper,
             pair(0),
             pair(2),
         ]
@@ -317,7 +329,9 @@ mod tests {
             let crease = to_crease(corner, reach);
             for k in 0..4 {
                 let expected = if k == corner { reach } else { 1.0 };
-                assert!((reach_of_corner(crease, k) - expected).abs() < 1e-4);
+                // Half a step.
+                let off = (reach_of_corner(crease, k) - expected).abs();
+                assert!(off <= 0.51 * MAX_CREASE / CREASE_STEPS, "{off}");
             }
         }
         assert_eq!([0, 1, 2, 3].map(|k| reach_of_corner(0, k)), [1.0; 4]);

@@ -32,7 +32,9 @@ use neurotess_mesh::{CoarseMesh, PatchKind};
 
 use crate::fours::four;
 use crate::{Caps, Path, RefineOptions};
-pub(crate) use border::{BORDER_CUBIC, LEAST_LIFT, loft_border, shift};
+pub(crate) use border::{
+    BORDER_CUBIC, CLEAR_OF_ROWS, LEAST_LIFT, along_border, loft_border, shift,
+};
 pub(crate) use center_line::{CenterLines, MAX_SWAY, hermite_tangents};
 pub(crate) use corner::{Corners, Jets};
 pub use edges::SOMA_FILLET;

@@ -19,7 +19,7 @@ struct Corner {
     tangent: vec3<f32>,
     radius: f32,
     role: u32,
-    // Of an inset's corner: length of a loft's last leg along the tangent.
+    // Of an inset's corner: length of a loft's last leg along the tangent. Of any other: its point's border.
     collar: f32,
     // Of an ordinary tracing point or an end: change of the radius along the path.
     taper: f32,

@@ -4,8 +4,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Patch, PatchKind, Role, SurfaceVertex, Vertex};
 
 use crate::evaluate::{
-    Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes, loft_border,
-    shift,
+    Corners, EdgeCurves, EdgeKind, EdgeNormals, F32x4, PatchShape, Points, Tubes, along_border,
+    loft_border, shift,
 };
 use crate::fours::four;
 use crate::plan::{Edge, Grid};
@@ -112,6 +112,21 @@ fn tracing(mesh: &CoarseMesh, vertex: u32) -> u32 {
     mesh.vertices[vertex as usize].tracing
 }
 
+/// How far along the way of so many parts to a vertex what is shown becomes the vertex's.
+#[inline(always)]
+fn border_to(mesh: &CoarseMesh, vertex: u32, parts: u32) -> f32 {
+    along_border(mesh.tracing[tracing(mesh, vertex) as usize].border, parts)
+}
+
+/// The x from which on the second corner of the trunk's side of a loft shows, of so many columns: where the tube beside it
+/// has its border.
+fn loft_middle(mesh: &CoarseMesh, patch: &Patch, columns: u32) -> f32 {
+    match patch.corners {
+        [a, b, ..] if a < b => border_to(mesh, b, columns),
+        [a, ..] => 1.0 - border_to(mesh, a, columns),
+    }
+}
+
 /// The vertices that are shown for four points.
 #[inline(always)]
 fn vertices(points: &Points, radii: F32x4, shown: [&Shown; 4]) -> [SurfaceVertex; 4] {
@@ -146,7 +161,8 @@ impl<'c> InnerEdges<'c> {
                 let border = loft_border([a, a, b, b], F32x4::ZERO) + shift(a, b, f32::from(level));
                 border.to_array()
             }
-            _ => [0.5; 4],
+            // Both ends of a ring's side show the same.
+            _ => four(|k| border_to(mesh, edges[k].to, level.into())),
         };
         Self {
             curves: EdgeCurves::new(kind, a, b, options.path),
@@ -172,11 +188,11 @@ impl<'c> InnerEdges<'c> {
     }
 }
 
-/// Index in [`Shown::of_quarters`] of a vertex at column i of row j; `border`: the y from which on the second ring shows.
+/// Index in [`Shown::of_quarters`] of a vertex at column i of row j; `borders`: the x and y from which on other corners show.
 #[inline(always)]
-fn quarter(grid: &Grid, i: u32, j: u32, border: f32) -> usize {
+fn quarter(grid: &Grid, i: u32, j: u32, borders: [f32; 2]) -> usize {
     let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
-    match (x >= 0.5, y >= border) {
+    match (x >= borders[0], y >= borders[1]) {
         (false, false) => 0,
         (true, false) => 1,
         (true, true) => 2,
@@ -196,13 +212,13 @@ pub(crate) fn lateral_vertices(
     let corners = Corners::of_patches(mesh, four(|k| mesh.patches[patches[k]].corners));
     let shown = four(|k| Shown::of_quarters(mesh, options, patches[k]));
     let tubes = Tubes::new(&corners, options.path);
+    let borders = four(|k| border_to(mesh, mesh.patches[patches[k]].corners[2], grid.ny));
     for j in 1..grid.ny {
         let y = F32x4::splat(j as f32 / grid.ny as f32);
         let (row, radius) = (tubes.row(y), tubes.radius(y));
         for i in 1..grid.nx {
             let points = row.points(F32x4::splat(i as f32 / grid.nx as f32));
-            let quarter = quarter(grid, i, j, 0.5);
-            let shown = four(|k| &shown[k][quarter]);
+            let shown = four(|k| &shown[k][quarter(grid, i, j, [0.5, borders[k]])]);
             put([i, j], vertices(&points, radius, shown));
         }
     }
@@ -218,12 +234,16 @@ pub(crate) fn other_vertices(
 ) {
     let shown = Shown::of_quarters(mesh, options, patch);
     let mut borders = [0.5; 4];
+    let middle = match shape.kind {
+        PatchKind::Loft => loft_middle(mesh, &mesh.patches[patch], grid.nx),
+        _ => 0.5,
+    };
     shape.for_each_inside(options, [grid.nx, grid.ny], |[i, j], points, radii| {
         if shape.kind == PatchKind::Loft && j == 1 {
             let x = four(|k| (i + k as u32) as f32 / grid.nx as f32);
             borders = shape.border(F32x4::from_array(x), grid.ny).to_array();
         }
-        let of = four(|k| &shown[quarter(grid, i + k as u32, j, borders[k])]);
+        let of = four(|k| &shown[quarter(grid, i + k as u32, j, [middle, borders[k]])]);
         for (i, vertex) in (i..grid.nx).zip(vertices(&points, radii, of)) {
             put([i, j], vertex);
         }
@@ -240,10 +260,15 @@ pub(crate) fn inner_vertex(
 ) -> SurfaceVertex {
     let (x, y) = (i as f32 / grid.nx as f32, j as f32 / grid.ny as f32);
     let (position, normal) = shape.interior(options, x, y);
-    let border = match shape.kind {
-        PatchKind::Loft => shape.border(F32x4::splat(x), grid.ny).x,
-        _ => 0.5,
+    let of = &mesh.patches[patch];
+    let borders = match shape.kind {
+        PatchKind::Loft => [
+            loft_middle(mesh, of, grid.nx),
+            shape.border(F32x4::splat(x), grid.ny).x,
+        ],
+        PatchKind::Lateral => [0.5, border_to(mesh, of.corners[2], grid.ny)],
+        PatchKind::Cap | PatchKind::Soma => [0.5; 2],
     };
-    let shown = Shown::of_quarters(mesh, options, patch)[quarter(grid, i, j, border)];
+    let shown = Shown::of_quarters(mesh, options, patch)[quarter(grid, i, j, borders)];
     shown.vertex(position, normal, shape.radius(options, x, y))
 }

@@ -10,7 +10,7 @@ use crate::bounding_sphere::{patch_sphere, sphere_around};
 use crate::decode::{
     POINT_END, POINT_EXPLICIT, POINT_GOES_ON, POINT_KIND_SHIFT, POINT_NARROWS, POINT_ORDINARY,
     POINT_SHAPED, POINTS_OF_SPHERE, SHAPED_LEVEL_SHIFT, SHAPED_OPEN_SHIFT, TAPER_LOW_BITS,
-    TAPER_NARROWS, collar, from_sphere, radius, taper, to_sphere,
+    TAPER_NARROWS, collar, from_sphere, radius, taper, to_collar, to_sphere,
 };
 use crate::packer::{Contents, Packer, cap_ring, widened};
 use crate::part::{MAX_COLOR_KEYS, MeshPart, PATCHES_OF_SPHERE};
@@ -200,7 +200,7 @@ impl Packer<'_> {
         }
         let collar = match form {
             RingForm::Implicit(_) => point.collar,
-            RingForm::Shaped(shaped) => collar(shaped.collar),
+            RingForm::Shaped(_) => collar(to_collar(point.collar)),
         };
         let rounded = TracingPoint {
             center,

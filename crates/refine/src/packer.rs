@@ -41,7 +41,7 @@ pub(crate) struct Packer<'m> {
     pub(crate) others: Vec<usize>,
     /// By vertex: whether it is explicit.
     pub(crate) explicit: Vec<bool>,
-    /// By vertex: whether patches name it that belong to no run and are no cap of its ring.
+    /// By vertex: whether patches name it that belong to no run and are no cap of its ring, or its point has a border.
     pub(crate) named: Vec<bool>,
     /// By vertex: the last run with a ring that it belongs to, [`NO_RUN`] if there is none.
     pub(crate) run_of: Vec<u32>,
@@ -73,6 +73,12 @@ impl<'m> Packer<'m> {
                 run_of[v as usize] = i;
             }
         }
+        // Only shaped rings and anchors have room for borders.
+        let points = mesh
+            .vertices
+            .iter()
+            .map(|v| &mesh.tracing[v.tracing as usize]);
+        let borders = points.map(|point| point.border != 0);
         Self {
             mesh,
             color_keys,
@@ -80,7 +86,7 @@ impl<'m> Packer<'m> {
             runs,
             others,
             explicit: vec![false; mesh.vertices.len()],
-            named: vec![false; mesh.vertices.len()],
+            named: borders.collect(),
             run_of,
         }
     }

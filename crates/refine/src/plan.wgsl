@@ -156,16 +156,7 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     let t = f32(k) / f32(level);
     let jet = edge(s.kind, a, b, options.path, t);
     let normal = edge_normal(s.kind, a, b, jet.derivative, t);
-    var border = 0.5;
-    if (s.kind == EDGE_LOFT) {
-        border = loft_border(a, a, b, b, 0.0, level);
-    }
-    // What leads from a joint to a branch is the branch's.
-    let is_of_end = s.kind == EDGE_ALONG && a.role == ROLE_JOINT;
-    var shown = s.end;
-    if (t < border && !is_of_end) {
-        shown = s.start;
-    }
+    var shown = select(s.start, s.end, t >= border_of(s.kind, a, a, b, b, 0.0, level));
     if (s.kind == EDGE_SOMA) {
         // A soma's edges belong to the soma up to the neurite's ring.
         if (a.role == ROLE_SOMA) {
@@ -188,9 +179,22 @@ fn edge_vertex(source: CornerSource, options: LodCriterion, s: Side, k: u32, lev
     return SurfacePoint(jet.position, normal, axis, radius, shown);
 }
 
-// The y from which on vertices of a loft of so many rows show the branch, at x between the trunk's corners a and b and
-// the inset's d and c. Rust twin: border.rs, with the theory.
-fn loft_border(a: Corner, b: Corner, c: Corner, d: Corner, x: f32, rows: u32) -> f32 {
+// How far along the way to a corner, of so many parts, the corner shows. Rust twin: border.rs.
+fn along_border(before: Corner, to: Corner, parts: u32) -> f32 {
+    // What leads from a joint to a branch is the branch's.
+    if (before.role == ROLE_JOINT) {
+        return 0.0;
+    }
+    let border = abs(to.collar) + (0.5 * sign(to.collar) - CLEAR_OF_ROWS) / f32(parts);
+    return select(border, 0.5, to.role == ROLE_INSET || to.collar == 0.0);
+}
+
+// The y from which on vertices of an edge or a patch of so many rows show its second side: of a loft the branch, at x between
+// the trunk's corners a and b and the inset's d and c. Rust twin: border.rs, with the theory.
+fn border_of(kind: u32, a: Corner, b: Corner, c: Corner, d: Corner, x: f32, rows: u32) -> f32 {
+    if (kind != EDGE_LOFT) {
+        return along_border(a, d, rows);
+    }
     let offset = blend(a.offset, b.offset, x);
     let size = length(a.offset) * (1.0 - x) + length(b.offset) * x;
     let near = blend(a.center, b.center, x) + normalize_or(offset, a.radial) * size;
@@ -241,21 +245,14 @@ fn inner_vertex(
     let y = f32(j) / f32(grid.ny);
     let shape = patch_shape(source, p);
     let inside = interior(shape, options.path, options.caps, x, y);
-    var border = 0.5;
-    if (p.kind == PATCH_LOFT) {
-        border = loft_border(shape.a, shape.b, shape.c, shape.d, x, grid.ny);
+    // Where a loft's trunk changes, as the tube beside it does. Of others both corners show the same.
+    var middle = along_border(shape.a, shape.b, grid.nx);
+    if (p.corners.x > p.corners.y) {
+        middle = 1.0 - along_border(shape.b, shape.a, grid.nx);
     }
-    // What leads from a joint to a branch is the branch's.
-    let is_of_end = p.kind == PATCH_LATERAL && shape.a.role == ROLE_JOINT;
-    let is_second = y >= border || is_of_end;
-    var shown = p.corners.x;
-    if (x >= 0.5 && !is_second) {
-        shown = p.corners.y;
-    } else if (x >= 0.5) {
-        shown = p.corners.z;
-    } else if (is_second) {
-        shown = p.corners.w;
-    }
+    let column = select(p.corners.xw, p.corners.yz, x >= middle);
+    let border = border_of(p.kind, shape.a, shape.b, shape.c, shape.d, x, grid.ny);
+    var shown = select(column.x, column.y, y >= border);
     if (p.kind == PATCH_SOMA) {
         shown = first_of_soma(shape, p, shown);
         return SurfacePoint(inside.position, inside.normal, inside.position, 0.0, shown);

@@ -4,8 +4,8 @@ use glam::Vec3;
 use neurotess_mesh::{CoarseMesh, Role, TracingPoint};
 
 use crate::decode::{
-    ImplicitRing, MAX_CREASE, MAX_HEIGHT, ShapedRing, to_collar, to_crease, to_octahedral,
-    to_radius, to_signed16, to_taper, to_turn,
+    ImplicitRing, MAX_CREASE, MAX_HEIGHT, ShapedRing, to_collar_or_border, to_crease,
+    to_octahedral, to_radius, to_signed16, to_taper, to_turn,
 };
 
 /// Greatest distance, in radii, of a computed corner from the mesh's own, apart from the center's
@@ -65,7 +65,7 @@ pub(crate) fn shaped_ring(mesh: &CoarseMesh, ring: [u32; 4]) -> Option<ShapedRin
         circle,
         turns: offsets.map(|offset| to_turn(tangent, offset)),
         heights: offsets.map(|o| to_signed16(o.dot(tangent) / (MAX_HEIGHT * point.radius))),
-        collar: if inset { to_collar(point.collar) } else { 0 },
+        upper: to_collar_or_border(point),
         crease: if inset { 0 } else { crease(offsets, point) },
     };
     let alike = (0..4).all(|k| {

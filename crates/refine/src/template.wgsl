@@ -296,8 +296,8 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
     let on_circle = ring_corner(ring, 0u);
     let height = signed16(packed[at + 3u + k / 2u] >> (16u * (k & 1u)));
     let role = shaped_role(base, vertex);
-    let extra = (last >> 10u) & 0x1ffffu;
-    let reach = select(reach_of_corner(extra, k), 1.0, role == ROLE_INSET);
+    let crease = (last >> SHAPED_CREASE_SHIFT) & 0xffffu;
+    let reach = select(reach_of_corner(crease, k), 1.0, role == ROLE_INSET);
     let offset = on_circle.offset * reach + ring.tangent * (height * MAX_HEIGHT * ring.radius);
     return Corner(
         ring.center + offset,
@@ -308,7 +308,7 @@ fn shaped_corner(base: Base, vertex: u32) -> Corner {
         ring.tangent,
         ring.radius,
         role,
-        select(0.0, collar_of_code(extra), role == ROLE_INSET),
+        collar_or_border(last, role),
         ring.taper,
     );
 }
@@ -360,22 +360,23 @@ fn explicit_corner(base: Base, vertex: u32) -> Corner {
         tangent,
         bitcast<f32>(packed[anchor + 4u]),
         role_of_bits(role),
-        collar_of_bits(role),
+        collar_or_border(role, role_of_bits(role)),
         taper_of_bits((role >> ANCHOR_TAPER_SHIFT) & 0x1ffu),
     );
 }
 
 // An anchor's role, above it the nine bits of its taper, and above them its collar: a sign and 16 bits as
-// radii are, 0 for none.
+// radii are, 0 for none; or if it is no inset in the upper bits its border.
 fn role_of_bits(bits: u32) -> u32 {
     return bits & ((1u << ANCHOR_TAPER_SHIFT) - 1u);
 }
 
-fn collar_of_bits(bits: u32) -> f32 {
-    return collar_of_code(bits >> ANCHOR_COLLAR_SHIFT);
-}
-
-fn collar_of_code(code: u32) -> f32 {
+// What an anchor or a shaped ring has in its upper bits: the collar of an inset, the border of any other.
+fn collar_or_border(bits: u32, role: u32) -> f32 {
+    if (role != ROLE_INSET) {
+        return f32(bitcast<i32>(bits) >> BORDER_SHIFT) / 16.0;
+    }
+    let code = bits >> COLLAR_SHIFT;
     let length = bitcast<f32>(((code & ~COLLAR_AGAINST) + RADIUS_BASE) << 12u);
     let along = select(length, -length, (code & COLLAR_AGAINST) != 0u);
     return select(0.0, along, code != 0u);

@@ -158,6 +158,7 @@ impl Plan {
                 .map(|n| self.joints[n as usize].ring())
                 .to_vec(),
             end: PathEnd::Joint(lower),
+            changes: Vec::new(),
             zones: Vec::new(),
         });
         self.attach(new);

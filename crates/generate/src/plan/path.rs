@@ -38,6 +38,8 @@ pub(crate) struct Path {
     /// Two or more. The first and the last stand for what the path begins and ends in: a joint's is at its center.
     pub(crate) rings: Vec<PlannedRing>,
     pub(crate) end: PathEnd,
+    /// Where along the tracing the section changes (µm, as `arc` of the rings).
+    pub(crate) changes: Vec<f64>,
     /// Insets of each zone, the stretch between two rings where branches leave.
     pub(crate) zones: Vec<Vec<u32>>,
 }
@@ -105,6 +107,9 @@ pub(crate) struct PlannedRing {
     pub(crate) label: Label,
     /// Node of the tracing that it stands for, or the nearest.
     pub(crate) node: u32,
+    /// How far along the path it is, as traced (µm); of a ring that a joint or an inset stands for without meaning but at
+    /// the start.
+    pub(crate) arc: f64,
     pub(crate) kind: RingKind,
     /// At a bend, from the center to the corner on its inner side, in radii: see creases.rs.
     pub(crate) crease: Option<DVec3>,
@@ -135,6 +140,7 @@ impl PlannedRing {
             normal: DVec3::ZERO,
             label: Label::of(node),
             node: index,
+            arc: 0.0,
             kind: RingKind::Traced,
             crease: None,
         }
@@ -198,6 +204,7 @@ impl Joint {
             normal: self.normal,
             label: self.label,
             node: self.fork,
+            arc: 0.0,
             kind: RingKind::Traced,
             crease: None,
         }

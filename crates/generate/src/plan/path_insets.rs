@@ -121,6 +121,7 @@ impl Planner<'_> {
                 },
             ],
             end: PathEnd::Free,
+            changes: Vec::new(),
             zones: Vec::new(),
         });
     }

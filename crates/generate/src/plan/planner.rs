@@ -242,6 +242,7 @@ impl<'a> Planner<'a> {
             start,
             rings: planned,
             end,
+            changes: self.section_changes(way, line),
             zones,
         });
     }
@@ -299,24 +300,26 @@ impl<'a> Planner<'a> {
 
     /// The ring at a place of a way.
     fn ring(&self, way: &Way, line: &Polyline, place: &RingPlace) -> PlannedRing {
+        let arc = place.arc;
         let kind = match place.kind {
-            PlaceKind::Point(index) => return self.traced(way.nodes[index]),
+            PlaceKind::Point(index) => {
+                return PlannedRing {
+                    arc,
+                    ..self.traced(way.nodes[index])
+                };
+            }
             PlaceKind::Ring(kind) => kind,
         };
         let last = way.nodes.len() - 1;
-        let node = way.nodes[nearest(line, place.arc).clamp(1.min(last), last)];
+        let node = way.nodes[nearest(line, arc).clamp(1.min(last), last)];
         let ring = self.traced(node);
         // The section and type are those of the segment that it lies on, which belongs to its lower node.
-        let after = line
-            .arcs
-            .partition_point(|&arc| arc < place.arc)
-            .clamp(1, last);
-        let [before, after] = [after - 1, after].map(|index| way.nodes[index]);
-        let is_upward = self.base.node(before).parent == after;
-        let lower = Label::of(self.base.node(if is_upward { before } else { after }));
+        let after = line.arcs.partition_point(|&at| at < arc).clamp(1, last);
+        let lower = Label::of(self.base.node(self.lower(way, after)));
         PlannedRing {
-            center: line.at(place.arc),
-            radius: line.radius(place.arc),
+            center: line.at(arc),
+            radius: line.radius(arc),
+            arc,
             kind,
             label: match ring.label.section == lower.section {
                 true => ring.label,
@@ -324,6 +327,23 @@ impl<'a> Planner<'a> {
             },
             ..ring
         }
+    }
+
+    /// The lower node of a way's segment, to whose section the segment belongs; `after`: index of the segment's second node.
+    fn lower(&self, way: &Way, after: usize) -> u32 {
+        let [before, after] = [after - 1, after].map(|index| way.nodes[index]);
+        match self.base.node(before).parent == after {
+            true => before,
+            false => after,
+        }
+    }
+
+    /// Arc lengths at which the section of a way changes.
+    fn section_changes(&self, way: &Way, line: &Polyline) -> Vec<f64> {
+        let section = |after: usize| self.base.node(self.lower(way, after)).section;
+        let inner = 1..way.nodes.len() - 1;
+        let changes = inner.filter(|&node| section(node) != section(node + 1));
+        changes.map(|node| line.arcs[node]).collect()
     }
 
     /// The ring of a node, as thick as its choice has it.

@@ -199,6 +199,7 @@ impl<'a> Assembly<'a> {
             role,
             collar: 0.0,
             taper: 0.0,
+            border: 0,
             kind,
             sample: sample_id(sample),
             section,

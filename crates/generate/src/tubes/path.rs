@@ -174,7 +174,8 @@ impl Assembly<'_> {
         let tracing = self.tracing(planned, role);
         let taper = rings.taper(ring);
         let point = &mut self.mesh.tracing[tracing as usize];
-        (point.tangent, point.taper) = (tangent.as_vec3(), taper as f32);
+        (point.tangent, point.taper, point.border) =
+            (tangent.as_vec3(), taper as f32, rings.border(ring));
         let side = tangent.cross(frame);
         let directions = if *angles == QUARTERS {
             // Nearly all rings, without sines.

@@ -87,4 +87,29 @@ impl PathRings<'_> {
         };
         taper(radii, [length(ring - 1), length(ring)], straight)
     }
+
+    /// Where on the way from the ring before a ring's section begins: see [`TracingPoint::border`].
+    ///
+    /// [`TracingPoint::border`]: neurotess_mesh::TracingPoint::border
+    pub(super) fn border(&self, ring: usize) -> i8 {
+        // What leads from a joint to a ring is all the ring's.
+        if ring == 0 || ring == 1 && self.path.start.is_joint() {
+            return 0;
+        }
+        let [before, own] = [ring - 1, ring].map(|ring| &self.path.rings[ring]);
+        let [first, second] = [before, own].map(|ring| ring.label.section);
+        if first == second {
+            return 0;
+        }
+        // Of several forks the first: what comes after it hangs on the section after it.
+        let changes = self.path.changes.iter();
+        let change = changes.copied().find(|&change| change >= before.arc);
+        let way = own.arc - before.arc;
+        let share = match change {
+            Some(change) if way > 0.0 => (change - before.arc) / way,
+            _ => 0.5,
+        };
+        let steps = (16.0 * share).round().clamp(1.0, 15.0) as i8;
+        if second < first { -steps } else { steps }
+    }
 }

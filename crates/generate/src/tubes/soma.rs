@@ -58,6 +58,7 @@ impl Assembly<'_> {
                     role: Role::Soma,
                     collar: 0.0,
                     taper: 0.0,
+                    border: 0,
                     kind: label.kind,
                     sample: sample_id(label.sample),
                     section: label.section,

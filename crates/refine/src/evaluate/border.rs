@@ -1,4 +1,6 @@
-//! Where a loft goes over from its trunk to its branch: what it shows of the cell.
+//! Where patches go over from one tracing point to another: what they show of the cell.
+//!
+//! Between two rings that is half way within a section, and between sections where the fork is, which the mesh says.
 //!
 //! A loft is nearest to the cone of its trunk until it leaves that, and then to the branch's. Its cubic leaves the trunk's
 //! surface at w from the branch's cone, measured along the trunk, and arrives h above the trunk. Where it is as near to
@@ -36,6 +38,20 @@ pub(crate) fn loft_border([a, b, c, d]: [&Corners; 4], x: F32x4) -> F32x4 {
     1.0 / (1.0 + (BORDER_CUBIC / 3.0 * lifted / (far * left)).sqrt())
 }
 
+/// By how much of a part borders between rings lie before rows, so that the twin decides alike: less than the least
+/// difference between a row and sixteenths with half a part, which is a sixteenth of a part.
+pub(crate) const CLEAR_OF_ROWS: f32 = 0.01;
+
+/// How far along the way to a point, of so many parts, what is shown becomes that of the point; `border`: that of the
+/// point. It is shifted by half a part, as that of lofts is.
+pub(crate) fn along_border(border: i8, parts: u32) -> f32 {
+    if border == 0 {
+        return 0.5;
+    }
+    let border = f32::from(border) / 16.0;
+    border.abs() + (0.5 * border.signum() - CLEAR_OF_ROWS) / parts as f32
+}
+
 /// How far (µm) an inset's corner is off the cone of the trunk's corner.
 fn height(trunk: &Corners, inset: &Corners) -> F32x4 {
     let from = inset.position - trunk.center;
@@ -49,4 +65,43 @@ fn height(trunk: &Corners, inset: &Corners) -> F32x4 {
 pub(crate) fn shift(trunk: &Corners, inset: &Corners, rows: f32) -> F32x4 {
     let first = trunk.has_role(Role::Soma) | inset.collar.cmplt(F32x4::ZERO);
     F32x4::select(first, F32x4::splat(-0.5 / rows), F32x4::splat(0.5 / rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::along_border;
+
+    /// The part of the way that shows the lower section, where faces between two rows show the higher one.
+    fn lower(border: i8, parts: u32) -> f32 {
+        let is_second = |k: u32| k as f32 / parts as f32 >= along_border(border, parts);
+        let of_second = (1..parts).filter(|&k| is_second(k)).count() as u32;
+        let rows = match border < 0 {
+            true => of_second,
+            false => parts - 1 - of_second,
+        };
+        rows as f32 / parts as f32
+    }
+
+    #[test]
+    fn faces_change_their_section_at_the_row_nearest_to_the_border() {
+        for parts in [2, 3, 4, 8, 13, 16, 64] {
+            for border in 1..=15 {
+                let share = f32::from(border) / 16.0;
+                for (border, share) in [(border, share), (-border, 1.0 - share)] {
+                    // The ring of the higher section has a row at least.
+                    let share = share.min(1.0 - 1.0 / parts as f32);
+                    let off = (lower(border, parts) - share).abs();
+                    assert!(
+                        off <= 0.5 / parts as f32 + 1e-6,
+                        "{border} of {parts}: {off}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn within_a_section_samples_change_half_way() {
+        assert_eq!([1, 5, 64].map(|parts| along_border(0, parts)), [0.5; 3]);
+    }
 }

@@ -70,8 +70,9 @@ fn make_explicit(@builtin(global_invocation_id) id: vec3<u32>) {
         part.instance,
     );
     let center = relative(part, v.center);
+    let collar = v.collar * select(1.0, part.scale, v.role == ROLE_INSET);
     coarse[coarse_index(at) + 1u] =
-        CoarsePoint(center.x, center.y, center.z, v.collar * part.scale, v.role, bitcast<u32>(v.taper), 0u, part.instance);
+        CoarsePoint(center.x, center.y, center.z, collar, v.role, bitcast<u32>(v.taper), 0u, part.instance);
 }
 
 // The placed part that an explicit vertex belongs to.

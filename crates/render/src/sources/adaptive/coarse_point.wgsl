@@ -14,7 +14,7 @@ struct CoarsePoint {
     x: f32,
     y: f32,
     z: f32,
-    // In an explicit vertex's second entry: its collar.
+    // In an explicit vertex's second entry: its collar or border.
     radius: f32,
     // Of a ring: see pack_turn. Of an explicit vertex: normal and tangent; in its second entry its
     // role and taper.
