@@ -129,6 +129,8 @@ def test_no_option_of_the_command_is_missing() -> None:
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
     # In Python a palette may be a dictionary of colors.
     drawing = {"out", "force", "help", "strict", "stats", "turntable", "frames", "threads", "set_color", "saved_view"}
+    # What pictures tell of themselves is said when they are saved.
+    drawing |= {"no_recipe"}
     # In Python several meshes are one list.
     drawing |= {"mesh", "meshes"}
     # The command has no numbers of one's own.

@@ -174,7 +174,7 @@ def test_wrong_options_are_value_errors(cell: nt.Morphology) -> None:
     for options, message in [
         ({"color_by": "mood"}, "color_by='mood': use 'type', 'neurite', .* or 'value'"),
         ({"size": (0, 10)}, r"size=\(0, 10\): a width and a height of 1 to 32768 pixels"),
-        ({"samples": "many"}, "samples='many': a whole number is needed"),
+        ({"samples": "many"}, "samples='many': a whole number from 1 to 64 is needed"),
         ({"samples": 100}, "samples=100: a whole number from 1 to 64 is needed"),
         ({"fov": "wide"}, "fov='wide': a number is needed"),
         ({"axes": "x"}, "axes='x': True or False is needed"),
@@ -420,3 +420,19 @@ def test_meshes_are_drawn_from_files_and_from_memory(cell: nt.Morphology, tmp_pa
         nt.render(cell, meshes=[{"color": "red"}], **SMALL)
     with pytest.raises(FileNotFoundError, match=r"none\.obj"):
         nt.render(cell, meshes=["none.obj"], **SMALL)
+
+
+def test_a_png_tells_how_it_was_made(cell: nt.Morphology, tmp_path: Path) -> None:
+    look: dict[str, Any] = {"size": (60, 40), "samples": 1, "view": "iso", "transparent": True, "least_width": 0}
+    figure = nt.render(cell, color_by="depth", colormap="magma", **look)
+    figure.save(tmp_path / "figure.png")
+    again = nt.render(cell, like=tmp_path / "figure.png")
+    assert np.array_equal(np.asarray(again), np.asarray(figure))
+    assert again.to_png() == figure.to_png()
+    # Options that are given go before its own.
+    other = nt.render(cell, like=tmp_path / "figure.png", colormap="viridis")
+    expected = nt.render(cell, color_by="depth", colormap="viridis", **look)
+    assert np.array_equal(np.asarray(other), np.asarray(expected))
+    with pytest.raises(nt.RenderError, match="no PNG file"):
+        cell.save(tmp_path / "cell.swc")
+        nt.render(cell, like=tmp_path / "cell.swc")

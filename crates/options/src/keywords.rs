@@ -165,9 +165,18 @@ fn set<Group: Serialize + DeserializeOwned>(
         (Some(Value::Array(_)), one) if name != "synapses" => Value::Array(vec![one.clone()]),
         _ => value.clone(),
     };
+    let number = listed.is_number();
     all.insert(name.to_owned(), listed);
     // Only this one can be wrong: all others are those of a group that there is.
-    let read = serde_json::from_value(Value::Object(all));
+    let mut read = serde_json::from_value(Value::Object(all.clone()));
+    if read.is_err() && number {
+        // A name that is a number, like that of a node set; of choices, the message names them.
+        all.insert(name.to_owned(), Value::String(text_of(value)));
+        read = serde_json::from_value(Value::Object(all)).or_else(|e| match e.to_string() {
+            told if told.starts_with("unknown variant") => Err(e),
+            _ => read,
+        });
+    }
     *group = read.map_err(|e| OptionError::value(name, value, &needed(&e.to_string())))?;
     Ok(())
 }

@@ -44,6 +44,8 @@ def arguments(options: Mapping[str, Any]) -> list[str]:
             continue
         if value is True:
             words.append(flag)
+        elif isinstance(value, dict):
+            words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
         elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):
             words.append(f"{flag}={word(value)}")
         else:

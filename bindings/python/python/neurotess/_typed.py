@@ -167,6 +167,7 @@ class RenderOptions(TypedDict, total=False):
     cache: bool
     gpu_memory: int | str | None
     adapter: str | None
+    like: str | os.PathLike[str] | None
 
 
 class PageOptions(TypedDict, total=False):
