@@ -8,6 +8,7 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import neurotess as nt
 import numpy as np
@@ -80,13 +81,12 @@ def test_the_soma_can_be_that_of_a_file(cell: nt.Morphology, tmp_path: Path) -> 
 def test_options_are_those_of_the_command(
     cell: nt.Morphology, tmp_path: Path, options: dict[str, object]
 ) -> None:
-    from neurotess._options import arguments
 
     cell.save(tmp_path / "cell.swc")
     read = nt.read(tmp_path / "cell.swc")
     nt.mesh(read, **options).save(tmp_path / "ours.ply")
     command = [sys.executable, "-m", "neurotess", "mesh", str(tmp_path / "cell.swc"), "-q"]
-    command += ["-o", str(tmp_path / "theirs.ply"), *arguments(options)]
+    command += ["-o", str(tmp_path / "theirs.ply"), *_arguments(options)]
     subprocess.run(command, check=True)
     assert (tmp_path / "ours.ply").read_bytes() == (tmp_path / "theirs.ply").read_bytes()
 
@@ -307,3 +307,25 @@ def test_stl_far_from_the_origin_is_told(cell: nt.Morphology, tmp_path: Path) ->
         warnings.simplefilter("error")
         far.save(tmp_path / "far.ply")
         nt.mesh(cell, level=1).save(tmp_path / "near.stl")
+
+
+def _arguments(options: dict[str, Any]) -> list[str]:
+    """Options as arguments: ``max_error=0.1`` is ``--max-error=0.1``; None and False are left out."""
+    words: list[str] = []
+    for name, value in options.items():
+        flag = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(flag)
+        elif isinstance(value, dict):
+            words += [f"{flag}={_word(of)}={_word(to)}" for of, to in value.items()]
+        elif isinstance(value, (str, Path)) or not hasattr(value, "__iter__"):
+            words.append(f"{flag}={_word(value)}")
+        else:
+            words.append(f"{flag}={','.join(map(_word, value))}")
+    return words
+
+
+def _word(value: Any) -> str:
+    return str(value) if isinstance(value, (str, Path)) else repr(value)

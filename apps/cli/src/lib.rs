@@ -1,10 +1,9 @@
-//! The `neurotess` command as a library: the program is [`main`], and [`embed`] is what a program with cells
-//! in memory, like the Python package, shares with it: the options, what they mean, and their checks.
+//! The `neurotess` command as a library, for programs that bring it along, like the Python package: the program is
+//! [`main`]. What commands do is in the crate `neurotess`, with their options.
 #![forbid(unsafe_code)]
 
 mod cli;
 mod commands;
-pub mod embed;
 #[cfg(feature = "gpu")]
 mod headless;
 mod interrupt;

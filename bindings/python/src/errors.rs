@@ -48,8 +48,7 @@ pub(crate) fn option(py: Python<'_>, message: &str) -> PyErr {
     made(py, "option_error", (message,))
 }
 
-/// An option of a picture that is wrong.
-#[cfg(feature = "render")]
+/// An option of a picture or an edit that is wrong.
 pub(crate) fn draw_option(py: Python<'_>, error: &neurotess::options::OptionError) -> PyErr {
     use neurotess::options::OptionError;
     match error {

@@ -6,10 +6,14 @@ use std::collections::BTreeMap;
 use neurotess::drawing::{DrawOptions, picture_of_png};
 #[cfg(feature = "render")]
 use neurotess::options::OptionError;
+use neurotess::options::set_option;
 use neurotess::recipe::{MeshOptions, NamedOptions, OptionValue, OptionsError, Spelling};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyMapping, PyString};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::errors;
 
@@ -65,14 +69,33 @@ fn set(
 ) -> Result<(), OptionError> {
     match keyword {
         "no_cache" => options.no_cache = true,
-        "adapter" | "gpu_memory" => options.device.set(keyword, value)?,
+        "adapter" | "gpu_memory" => set_option(&mut options.device, keyword, value)?,
         _ => options.picture.set(keyword, value)?,
     }
     Ok(())
 }
 
+/// Sets options of a group by these keywords; what is None or False has its default.
+///
+/// # Errors
+/// As [`draw_options`].
+pub(crate) fn set_all<Group: Serialize + DeserializeOwned>(
+    group: &mut Group,
+    keywords: &Bound<'_, PyDict>,
+) -> PyResult<()> {
+    let py = keywords.py();
+    for (keyword, value) in keywords {
+        let Some(value) = option_value(&value)?.filter(|v| *v != OptionValue::Switch(false)) else {
+            continue;
+        };
+        let keyword: String = keyword.extract()?;
+        let set = set_option(group, &keyword, &json_of(&value));
+        set.map_err(|e| errors::draw_option(py, &e))?;
+    }
+    Ok(())
+}
+
 /// A value as JSON; numbers that it has not as text, by which they are refused.
-#[cfg(feature = "render")]
 fn json_of(value: &OptionValue) -> serde_json::Value {
     use serde_json::Value;
     match value {

@@ -72,6 +72,9 @@ fn without_folders(picture: &Picture) -> Value {
         *path = path.file_name().unwrap_or_default().into();
     };
     let mut picture = picture.clone();
+    if picture.colors.palette.is_file() {
+        picture.colors = picture.colors.without_file();
+    }
     picture.colors.report.iter_mut().for_each(name);
     picture.markers.points.iter_mut().for_each(name);
     let meshes = picture.meshes.mesh.iter_mut();

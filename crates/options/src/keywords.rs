@@ -5,7 +5,6 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use crate::alike::one_of;
-use crate::groups::DeviceOptions;
 use crate::{OptionError, Picture, text_of};
 
 impl Picture {
@@ -131,20 +130,22 @@ impl Picture {
     }
 }
 
-impl DeviceOptions {
-    /// Sets an option by its name.
-    ///
-    /// # Errors
-    /// There is no such option, or a value that it cannot have.
-    pub fn set(&mut self, keyword: &str, value: &Value) -> Result<(), OptionError> {
-        let known = value_of(self);
-        match known.contains_key(keyword) {
-            true => set(self, keyword, value),
-            false => Err(OptionError::unknown(
-                keyword,
-                known.keys().map(String::as_str),
-            )),
-        }
+/// Sets an option of a group by its name.
+///
+/// # Errors
+/// There is no such option, or a value that it cannot have.
+pub fn set_option<Group: Serialize + DeserializeOwned>(
+    group: &mut Group,
+    keyword: &str,
+    value: &Value,
+) -> Result<(), OptionError> {
+    let known = value_of(group);
+    match known.contains_key(keyword) {
+        true => set(group, keyword, value),
+        false => Err(OptionError::unknown(
+            keyword,
+            known.keys().map(String::as_str),
+        )),
     }
 }
 

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod alike;
+mod edit_recipe;
 mod error;
 mod given;
 #[cfg(feature = "clap")]
@@ -14,8 +15,10 @@ mod keywords;
 mod picture;
 pub mod words;
 
+pub use edit_recipe::{EditRecipe, OF_UNIT};
 pub use error::OptionError;
 pub use given::text_of;
 #[cfg(feature = "clap")]
 pub use given_picture::GivenPicture;
+pub use keywords::set_option;
 pub use picture::{MeshesBeside, Picture};

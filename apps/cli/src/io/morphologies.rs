@@ -6,6 +6,7 @@ use std::path::Path;
 use neurotess::formats::swc::SampleNumbers;
 use neurotess::formats::{self, Format};
 use neurotess::morphology::Morphology;
+use neurotess::options::OF_UNIT;
 use serde::Serialize;
 
 use super::output::{self, OutputError};
@@ -40,9 +41,6 @@ impl ReaderWarning {
         format!("{place} {} ({})", self.message, self.code)
     }
 }
-
-/// Codes of a cell whose unit is likely not the micrometer.
-pub(crate) const OF_UNIT: [&str; 2] = ["too_large", "too_small"];
 
 impl From<formats::Warning> for ReaderWarning {
     fn from(warning: formats::Warning) -> Self {

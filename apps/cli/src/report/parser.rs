@@ -27,11 +27,3 @@ pub(crate) fn report_parser_error(error: &clap::Error, arguments: &[OsString]) -
         _ => u8::try_from(error.exit_code()).unwrap_or(2),
     }
 }
-
-/// What the parser has against an option, on one line.
-pub(crate) fn first_paragraph(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let text = text.strip_prefix("error: ").unwrap_or(&text);
-    let paragraph = text.split("\n\n").next().unwrap_or_default();
-    paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
-}

@@ -101,24 +101,6 @@ def edit(
     ['simplify', 'recenter']
     """
     given = dict(locals())
-    pairs = rotate.items() if isinstance(rotate, Mapping) else rotate or ()
-    words = _words("types", [_join(types.items(), ",")] if types else ())
-    words += _options.arguments({"scale": scale})
-    words += _words("units", [] if units is None else [units if isinstance(units, str) else _voxel(units)])
-    words += _options.arguments({"mend_radii": mend_radii})
-    words += _words("reroot", _several(reroot))
-    words += _options.arguments({"join": join, "subtree": subtree})
-    words += _words("cut", _several(cut))
-    words += _words("drop-types", _several(drop_types))
-    words += _options.arguments(
-        {
-            "within": within,
-            "prune": prune,
-            "smooth": smooth,
-            "resample": resample,
-            "simplify": simplify,
-        }
-    )
     synapses = None
     if spines is not None:
         places, *seed = spines if isinstance(spines, tuple) else (spines,)
@@ -126,13 +108,30 @@ def edit(
             raise missing_file(os.fspath(places))
         if hasattr(places, "__len__") and not isinstance(places, (str, os.PathLike)):
             places, synapses = "synapses", _places(places)
-        words += _words("spines", [",".join(map(_options.word, (places, *seed)))])
-    words += _options.arguments({"recenter": recenter})
-    words += _words("rotate", [_join([pair], "") for pair in pairs])
-    words += _words("mirror", _several(mirror))
-    words += _words("matrix", [] if matrix is None and translate is None else [_rows(matrix, translate)])
+        spines = [places, *seed]
+    keywords = {
+        "types": types,
+        "scale": scale,
+        "units": units,
+        "mend_radii": mend_radii,
+        "reroot": reroot,
+        "join": join,
+        "subtree": subtree,
+        "cut": cut,
+        "drop_types": drop_types,
+        "within": within,
+        "prune": prune,
+        "smooth": smooth,
+        "resample": resample,
+        "simplify": simplify,
+        "spines": spines,
+        "recenter": recenter,
+        "rotate": rotate,
+        "mirror": mirror,
+        "matrix": None if matrix is None and translate is None else _rows(matrix, translate),
+    }
     try:
-        edits = _neurotess.Edits(words)
+        edits = _neurotess.Edits(_options.keywords(keywords))
     except OptionError as error:
         raise with_given(error, given) from None
     if isinstance(cell, Morphology) or package_of(cell):
@@ -153,20 +152,7 @@ def edit(
     return Morphology(edited, tuple(reports), known.id, connectors)
 
 
-def _words(name: str, values: Iterable[object]) -> list[str]:
-    flag = "--" + name
-    return [f"{flag}={_options.word(value)}" for value in values]
-
-
-def _join(pairs: Iterable[tuple[object, object]], by: str) -> str:
-    return by.join(f"{_options.word(of)}={_options.word(to)}" for of, to in pairs)
-
-
-def _voxel(sides: Sequence[float]) -> str:
-    return "voxel=" + ",".join(map(_options.word, sides))
-
-
-def _rows(matrix: ArrayLike | None, translate: Sequence[float] | None) -> str:
+def _rows(matrix: ArrayLike | None, translate: Sequence[float] | None) -> list[float]:
     """The upper three rows of an affine map, which ends with a shift."""
     import numpy as np
 
@@ -182,7 +168,8 @@ def _rows(matrix: ArrayLike | None, translate: Sequence[float] | None) -> str:
         if shift.shape != (3,):
             raise ValueError(f"translate={translate!r}: (x, y, z) in µm is needed")
         rows[:, 3] += shift
-    return ",".join(map(_options.word, rows.ravel().tolist()))
+    rows_in_one: list[float] = rows.ravel().tolist()
+    return rows_in_one
 
 
 def _places(places: ArrayLike) -> list[list[float]]:
@@ -195,13 +182,6 @@ def _places(places: ArrayLike) -> list[list[float]]:
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise ValueError(f"spines: places have three coordinates each, (n, 3), not {rows.shape}")
     return rows.tolist()
-
-
-def _several(values: Any) -> Iterable[object]:
-    """One value or several, as several."""
-    if values is None:
-        return ()
-    return (values,) if isinstance(values, str) or not hasattr(values, "__iter__") else values
 
 
 def diff(

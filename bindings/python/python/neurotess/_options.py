@@ -1,4 +1,4 @@
-"""Options of functions as those of the command line, which checks them."""
+"""Options of functions as the module takes them, which checks them."""
 
 from __future__ import annotations
 
@@ -27,30 +27,12 @@ def recipe(options: Mapping[str, Any]) -> _neurotess.Recipe:
         raise with_given(error, options) from None
 
 
-def drawn(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of pictures as the module takes them: paths as text, lengths in µm."""
+def keywords(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of pictures and edits as the module takes them: paths as text, lengths in µm."""
     given = {name: value for name, value in options.items() if value is not None and value is not False}
     files = {name: os.fspath(value) for name, value in given.items() if isinstance(value, os.PathLike)}
     lengths = {name: plain(f"{name}=", value, "um") for name, value in given.items() if unit_of(value) is not None}
     return {**given, **files, **lengths}
-
-
-def arguments(options: Mapping[str, Any]) -> list[str]:
-    """Options as arguments: ``max_error=0.1`` is ``--max-error=0.1``; None and False are left out."""
-    words: list[str] = []
-    for name, value in options.items():
-        flag = "--" + name.replace("_", "-")
-        if value is None or value is False:
-            continue
-        if value is True:
-            words.append(flag)
-        elif isinstance(value, dict):
-            words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
-        elif isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__"):
-            words.append(f"{flag}={word(value)}")
-        else:
-            words.append(f"{flag}={','.join(map(word, value))}")
-    return words
 
 
 def joined(values: Iterable[Any] | float | None, by: str) -> str | float | None:

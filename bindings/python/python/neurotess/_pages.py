@@ -166,7 +166,7 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
         raise RenderError("this build makes no pages: build it with the feature 'gpu'")
     given = {name: options.get(name) for name in (*MESHED, *LOOK)}
     content = _content(what, {name: options.get(name) for name in CONTENT})
-    keywords = _options.drawn({**_with_colors(given), **content})
+    keywords = _options.keywords({**_with_colors(given), **content})
     chosen = {name: options.get(name) for name in SELECTION}
     values = options.get("values")
     if given["color_by"] == "value" and values is None and content["report"] is None:

@@ -105,7 +105,7 @@ def drawing_of(
         if is_file and options.get(name) is not None:
             _check_file(options[name])
     options["mesh"], surfaces = words_of(looks)
-    keywords = _options.drawn({**options, "picture_times": times, "adapter": adapter})
+    keywords = _options.keywords({**options, "picture_times": times, "adapter": adapter})
     data = still, series, surfaces, of_meshes, scale
     try:
         return _neurotess.Drawing([cell._cell for cell in cells], circuit, keywords, *data)

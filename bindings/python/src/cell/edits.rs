@@ -4,23 +4,28 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use neurotess::morphology::Difference;
-use neurotess_cli::embed::EditRecipe;
+use neurotess::options::EditRecipe;
+use neurotess::options::groups::EditOptions;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::{Cell, Told};
+use crate::options::set_all;
 use crate::work::released;
 use crate::{errors, json};
 
-/// How tracings are mended: options of the command line, checked.
+/// How tracings are mended: options, checked.
 #[pyclass(frozen, module = "neurotess._neurotess")]
 pub(crate) struct Edits(EditRecipe);
 
 #[pymethods]
 impl Edits {
     #[new]
-    fn new(py: Python<'_>, options: Vec<String>) -> PyResult<Self> {
-        let recipe = EditRecipe::new(options);
+    fn new(py: Python<'_>, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let mut edits = EditOptions::default();
+        set_all(&mut edits, keywords)?;
+        let recipe = EditRecipe::of(&edits);
         recipe.map(Self).map_err(|e| errors::option(py, &e))
     }
 

@@ -1,8 +1,10 @@
 //! What colors tell, and which they are.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use neurotess_color::OwnColors;
+use neurotess_morphology::NeuriteKind;
 use neurotess_picture::color::{ColorMap, Palette, Rgb};
 use serde::{Deserialize, Serialize};
 
@@ -80,6 +82,25 @@ impl ColorOptions {
     pub fn behind(&self) -> Option<Rgb> {
         let option = self.background.map(|color| color.0);
         option.or(self.palette.colors.background)
+    }
+
+    /// The same without the palette's file: its colors are those of options.
+    #[must_use]
+    pub fn without_file(&self) -> Self {
+        let own = self.own_colors();
+        let types = own.types.iter();
+        let types = types.map(|(&kind, &color)| (NeuriteKind(kind).name().to_owned(), color));
+        let named: BTreeMap<String, Rgb> = types.chain(own.categories.clone()).collect();
+        let set = |(name, color)| SetColor {
+            name,
+            color: Color(color),
+        };
+        Self {
+            palette: PaletteName::of(self.base_palette()),
+            set_color: named.into_iter().map(set).collect(),
+            background: self.behind().map(Color),
+            ..self.clone()
+        }
     }
 
     /// Whether cells are colored by numbers.

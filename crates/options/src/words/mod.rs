@@ -3,6 +3,7 @@
 mod beside;
 mod bytes;
 mod color;
+mod edits;
 mod fit;
 mod ids;
 mod light;
@@ -12,12 +13,17 @@ mod palette;
 mod point;
 mod ring;
 mod size;
+mod spines;
 mod time;
 mod types;
 
 pub use beside::MeshBeside;
 pub use bytes::Bytes;
 pub use color::{Color, SetColor};
+pub use edits::{
+    Affine, AxisName, Distance, EditedTypes, OutlierFactor, Renamed, Rotation, Smoothing,
+    SourceUnit,
+};
 pub use fit::Fit;
 pub use ids::{Ids, Region};
 pub use light::LightFrom;
@@ -27,5 +33,6 @@ pub use palette::{PaletteName, palette};
 pub use point::Point;
 pub use ring::Ring;
 pub use size::Size;
+pub use spines::{Places, SpinePlacing};
 pub use time::{MOST_PICTURES, Time};
 pub use types::Types;

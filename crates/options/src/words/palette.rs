@@ -19,13 +19,24 @@ pub struct PaletteName {
     pub colors: PaletteFile,
 }
 
+impl PaletteName {
+    /// A palette that has a name.
+    pub fn of(palette: Palette) -> Self {
+        Self {
+            text: palette.name().to_owned(),
+            colors: named(palette),
+        }
+    }
+
+    /// Whether it is of a file.
+    pub fn is_file(&self) -> bool {
+        self.text.parse::<Palette>().is_err()
+    }
+}
+
 impl Default for PaletteName {
     fn default() -> Self {
-        let base = Palette::default();
-        Self {
-            text: base.name().to_owned(),
-            colors: named(base),
-        }
+        Self::of(Palette::default())
     }
 }
 

@@ -1,10 +1,7 @@
 //! `neurotess convert`: morphologies in another format, and mended on the way.
 
 mod circuit;
-mod edits;
-mod in_memory;
 mod report;
-mod spines;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -22,9 +19,8 @@ use crate::io::circuits::partition;
 use crate::io::morphologies::{ReaderWarning, write_morphology, written as written_formats};
 use crate::io::output::{self, OutputError};
 use crate::report::{Entry, Failed, Failure, Reporter, Usage, usage};
-use edits::EditArgs;
-pub use in_memory::EditRecipe;
-use neurotess::options::groups::CellSelection;
+use neurotess::options::EditRecipe;
+use neurotess::options::groups::{CellSelection, EditOptions};
 
 /// `neurotess convert`
 #[derive(Args, Debug)]
@@ -57,7 +53,7 @@ pub(crate) struct ConvertArgs {
     #[arg(long)]
     pub(crate) dry_run: bool,
     #[command(flatten)]
-    pub(crate) edits: EditArgs,
+    pub(crate) edits: EditOptions,
     #[command(flatten)]
     pub(crate) cells: CellSelection,
 }
