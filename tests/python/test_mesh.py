@@ -311,6 +311,8 @@ def test_stl_far_from_the_origin_is_told(cell: nt.Morphology, tmp_path: Path) ->
 
 def _arguments(options: dict[str, Any]) -> list[str]:
     """Options as arguments: ``max_error=0.1`` is ``--max-error=0.1``; None and False are left out."""
+    from neurotess._options import word
+
     words: list[str] = []
     for name, value in options.items():
         flag = "--" + name.replace("_", "-")
@@ -319,13 +321,9 @@ def _arguments(options: dict[str, Any]) -> list[str]:
         if value is True:
             words.append(flag)
         elif isinstance(value, dict):
-            words += [f"{flag}={_word(of)}={_word(to)}" for of, to in value.items()]
+            words += [f"{flag}={word(of)}={word(to)}" for of, to in value.items()]
         elif isinstance(value, (str, Path)) or not hasattr(value, "__iter__"):
-            words.append(f"{flag}={_word(value)}")
+            words.append(f"{flag}={word(value)}")
         else:
-            words.append(f"{flag}={','.join(map(_word, value))}")
+            words.append(f"{flag}={','.join(map(word, value))}")
     return words
-
-
-def _word(value: Any) -> str:
-    return str(value) if isinstance(value, (str, Path)) else repr(value)

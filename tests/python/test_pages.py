@@ -147,7 +147,7 @@ def test_what_is_wrong_is_told_in_the_words_of_the_call(cell: nt.Morphology, tmp
         ({"palette": "mine"}, r"^palette='mine': use neurom, .* or a palette's file"),
         ({"palette": {"axon": "reddish"}}, r"^palette=\{'axon': 'reddish'\}: white, .*RRGGBB"),
         ({"range": (2, 1)}, r"^range=\(2, 1\): two numbers are needed, the lower first"),
-        ({"least_width": -1}, r"^least_width=-1: 0 or a number of pixels"),
+        ({"least_width": -1}, r"^least_width=-1: a number of 0 or more is needed"),
         ({"soma": "cube"}, r"^soma='cube': use 'fem'"),
         ({"nodes": [1]}, r"^nodes= selects cells of a circuit"),
     ]

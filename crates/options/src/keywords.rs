@@ -206,7 +206,7 @@ fn needed(message: &str) -> String {
                     "a boolean" => "true or false is needed".into(),
                     "a string" => "a name is needed".into(),
                     "f64" => "a number is needed".into(),
-                    "u64" | "usize" => "a whole number is needed".into(),
+                    "i64" | "u64" | "usize" => "a whole number is needed".into(),
                     "a sequence" => "a list is needed".into(),
                     other => format!("{other} is needed"),
                 }

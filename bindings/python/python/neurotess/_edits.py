@@ -108,7 +108,7 @@ def edit(
             raise missing_file(os.fspath(places))
         if hasattr(places, "__len__") and not isinstance(places, (str, os.PathLike)):
             places, synapses = "synapses", _places(places)
-        spines = [places, *seed]
+        spines = [os.fspath(places) if isinstance(places, os.PathLike) else places, *seed]
     keywords = {
         "types": types,
         "scale": scale,
@@ -126,7 +126,8 @@ def edit(
         "simplify": simplify,
         "spines": spines,
         "recenter": recenter,
-        "rotate": rotate,
+        # In their order: turns do not commute.
+        "rotate": [*rotate.items()] if isinstance(rotate, Mapping) else rotate,
         "mirror": mirror,
         "matrix": None if matrix is None and translate is None else _rows(matrix, translate),
     }

@@ -147,7 +147,7 @@ impl EditOptions {
     pub fn check(&self) -> Result<(), OptionError> {
         match (self.scale, self.units.as_ref()) {
             (Some(_), Some(_)) => Err(OptionError::together(
-                "--scale cannot be used with --units: leave out one of them",
+                "'--scale' cannot be used with '--units': leave out one of them",
             )),
             _ => Ok(()),
         }
