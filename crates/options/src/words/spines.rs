@@ -7,7 +7,7 @@ use std::str::FromStr;
 use super::Positive;
 use crate::given::by_text;
 
-/// Where spines grow: WHERE[,SEED].
+/// Where spines grow: `WHERE[,SEED]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpinePlacing {
     /// Where.
