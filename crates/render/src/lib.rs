@@ -23,7 +23,8 @@ mod shader_tests;
 pub mod adapter {
     pub use crate::gpu::adapter::{ADAPTER_VARIABLE, AdapterName, adapters, select_adapter};
     pub use crate::gpu::capabilities::Capabilities;
-    pub use crate::gpu::device::{device_descriptor, optional_features};
+    pub use crate::gpu::device::device_descriptor;
+    pub use crate::gpu::requirements::optional_features;
 }
 
 /// The shaders of pictures for a host that is not this crate, such as a browser.
@@ -59,8 +60,14 @@ pub mod testing {
     pub use neurotess_picture::SAMPLES;
 }
 
+/// Numbers of vectors and matrices, in the version that cameras and views are made of.
+pub use glam;
+/// The graphics library, in the version that devices, textures and passes must be of.
+pub use wgpu;
+
 pub use gpu::device::Gpu;
 pub use gpu::error::DeviceError;
+pub use gpu::requirements::Requirements;
 pub use neurotess_picture::markers::{Marker, MarkerSettings, MarkerShape};
 pub use neurotess_picture::meshes::MeshLook;
 pub use neurotess_picture::recolor::{KeyColors, VisibleKey};

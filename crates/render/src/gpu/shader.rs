@@ -86,12 +86,11 @@ pub(crate) fn shader(name: &'static str, parts: &ShaderParts) -> Shader {
 impl Gpu {
     /// Compiles a shader. Errors of the compiler, which [`Gpu::check`] returns, name file and line.
     pub(crate) fn shader_module(&self, shader: &Shader) -> wgpu::ShaderModule {
-        let module = self
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(shader.name),
-                source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
-            });
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: Some(shader.name),
+            source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
+        };
+        let module = self.caught(|| self.device.create_shader_module(descriptor));
         // Others compile beside it.
         let label = format!("'{}'", shader.name);
         self.explain_fault(|message| match message.contains(&label) {

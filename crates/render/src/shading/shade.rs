@@ -199,7 +199,7 @@ impl DrawPass<'_> {
             .map(|shader| source.layout(shader))
             .collect();
         let both_sides: Vec<bool> = (0..shaders.len()).map(both_sides).collect();
-        side_by_side(shaders.len(), |shader| {
+        side_by_side(gpu, shaders.len(), |shader| {
             let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
                 bind_group_layouts: &[Some(layouts[shader]), Some(layout)],
