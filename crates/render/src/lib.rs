@@ -4,6 +4,7 @@
 //! are here, too. A **vertex source** ([`VertexSource`]) makes vertices and selects how many: [`Adaptive`] refines a
 //! [`Scene`] as it is drawn, [`Prerefined`] keeps a refined surface in memory, and [`Exploration`] draws within a number
 //! of triangles. [`render_still`] draws a picture of any size, tile by tile, and hands it over in **bands** of rows.
+//! [`Composite`] draws into a render pass of another program.
 //!
 //! ```text
 //! source: levels, vertices ─▶ shade.wgsl: light, lines, wireframe ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes
@@ -77,6 +78,7 @@ pub use neurotess_picture::{
     PictureOptions, PixelSize, Placement, PngWriter, Projection, SceneError, Side, Template,
     TemplateId, Tile, Viewpoint, Watch, bounds, color, overlay, state, usual_least_width,
 };
+pub use output::composite::{Composite, CompositeError, HostPass, HostView, HostViewError};
 pub use output::meter::{FrameTime, Meter};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
 pub use output::static_picture::StaticPicture;

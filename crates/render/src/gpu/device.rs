@@ -26,6 +26,8 @@ pub struct Gpu {
     pub adapter: AdapterName,
     fault: Fault,
     handlers: Handlers,
+    /// Whether shaders can run for each sample of a pixel.
+    pub(crate) shades_samples: bool,
 }
 
 /// Whose functions the device calls when something goes wrong.
@@ -119,8 +121,9 @@ impl Gpu {
     /// Draws with a device that another program has opened, with what [`Gpu::requirements`] asks for. Its handlers of
     /// errors and of its loss stay that program's.
     ///
-    /// Whatever takes this value belongs into [`Gpu::scoped`]; outside of it errors come to the program's handler. That
-    /// the device is lost only the program hears.
+    /// [`Composite`](crate::Composite) returns the errors of what it does. Whatever else takes this value belongs into
+    /// [`Gpu::scoped`]; outside of it errors come to the program's handler. That the device is lost only the program
+    /// hears.
     ///
     /// # Errors
     /// The adapter cannot draw, or the device was opened with less than is needed.
@@ -139,6 +142,8 @@ impl Gpu {
         queue: wgpu::Queue,
         handlers: Handlers,
     ) -> Self {
+        let able = adapter.get_downlevel_capabilities().flags;
+        let shades_samples = able.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
         let adapter = name(adapter);
         if adapter.software {
             heap::keep_freed_memory();
@@ -149,6 +154,7 @@ impl Gpu {
             adapter,
             fault: Fault::default(),
             handlers,
+            shades_samples,
         }
     }
 

@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 50] = [
+pub(crate) const FILES: [WgslFile; 51] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources", "octahedral.wgsl"),
@@ -65,6 +65,7 @@ pub(crate) const FILES: [WgslFile; 50] = [
     file!("shading", "mask.wgsl"),
     file!("shading", "present.wgsl"),
     file!("output", "ids.wgsl"),
+    file!("output/composite", "composite.wgsl"),
     file!("output/static_picture", "collect.wgsl"),
     file!("output/static_picture", "recolor.wgsl"),
 ];
