@@ -4,6 +4,7 @@
 //! are here, too. A **vertex source** ([`VertexSource`]) makes vertices and selects how many: [`Adaptive`] refines a
 //! [`Scene`] as it is drawn, [`Prerefined`] keeps a refined surface in memory, and [`Exploration`] draws within a number
 //! of triangles. [`render_still`] draws a picture of any size, tile by tile, and hands it over in **bands** of rows.
+//! [`Composite`] draws into a render pass of another program.
 //!
 //! ```text
 //! source: levels, vertices ─▶ shade.wgsl: light, lines, wireframe ─▶ occlusion.wgsl ─▶ finish.wgsl: bytes
@@ -23,7 +24,8 @@ mod shader_tests;
 pub mod adapter {
     pub use crate::gpu::adapter::{ADAPTER_VARIABLE, AdapterName, adapters, select_adapter};
     pub use crate::gpu::capabilities::Capabilities;
-    pub use crate::gpu::device::{device_descriptor, optional_features};
+    pub use crate::gpu::device::device_descriptor;
+    pub use crate::gpu::requirements::optional_features;
 }
 
 /// The shaders of pictures for a host that is not this crate, such as a browser.
@@ -59,8 +61,14 @@ pub mod testing {
     pub use neurotess_picture::SAMPLES;
 }
 
+/// Numbers of vectors and matrices, in the version that cameras and views are made of.
+pub use glam;
+/// The graphics library, in the version that devices, textures and passes must be of.
+pub use wgpu;
+
 pub use gpu::device::Gpu;
 pub use gpu::error::DeviceError;
+pub use gpu::requirements::Requirements;
 pub use neurotess_picture::markers::{Marker, MarkerSettings, MarkerShape};
 pub use neurotess_picture::meshes::MeshLook;
 pub use neurotess_picture::recolor::{KeyColors, VisibleKey};
@@ -70,6 +78,7 @@ pub use neurotess_picture::{
     PictureOptions, PixelSize, Placement, PngWriter, Projection, SceneError, Side, Template,
     TemplateId, Tile, Viewpoint, Watch, bounds, color, overlay, state, usual_least_width,
 };
+pub use output::composite::{Composite, CompositeError, HostPass, HostView, HostViewError};
 pub use output::meter::{FrameTime, Meter};
 pub use output::progressive::{ProgressiveRenderer, Steps, ViewParams};
 pub use output::static_picture::StaticPicture;

@@ -91,7 +91,7 @@ fn rank(adapter: &Adapter) -> u8 {
 }
 
 /// What an adapter would have to be able to do.
-fn lacks(adapter: &Adapter) -> Vec<&'static str> {
+pub(crate) fn lacks(adapter: &Adapter) -> Vec<&'static str> {
     let mut able = adapter.get_downlevel_capabilities().flags;
     let info = adapter.get_info();
     if info.backend == Backend::Gl && is_old_opengl(&info.driver_info) {

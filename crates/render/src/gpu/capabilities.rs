@@ -3,8 +3,8 @@
 use wgpu::{DeviceType, Features};
 
 use crate::gpu::adapter::{find_adapter, name};
-use crate::gpu::device::optional_features;
 use crate::gpu::error::DeviceError;
+use crate::gpu::requirements::optional_features;
 
 /// What an adapter is able to do.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,16 +1,19 @@
 //! The GPU without a window: its limits and its errors.
 //!
 //! Errors of wgpu arrive asynchronously and panic by default. Here they are kept until they are
-//! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work.
+//! taken: by [`Gpu::check`] after making resources, by [`Gpu::wait`] after submitting work. On a device of another
+//! program, whose handlers stay as they are, they are kept by scopes: [`Gpu::scoped`].
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use neurotess_picture::PictureOptions;
-use wgpu::{Adapter, Features, Limits};
+use wgpu::{Adapter, Limits};
 
 use crate::gpu::adapter::{AdapterName, find_adapter, name};
 use crate::gpu::error::DeviceError;
 use crate::gpu::heap;
+use crate::gpu::requirements::{Requirements, optional_features};
+use crate::gpu::scopes::Scopes;
 
 /// An open device with its queue.
 #[derive(Debug)]
@@ -22,6 +25,16 @@ pub struct Gpu {
     /// The adapter's name.
     pub adapter: AdapterName,
     fault: Fault,
+    handlers: Handlers,
+    /// Whether shaders can run for each sample of a pixel.
+    pub(crate) shades_samples: bool,
+}
+
+/// Whose functions the device calls when something goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Handlers {
+    Ours,
+    Hosts,
 }
 
 /// The first error since the last check. Once the device is lost, nothing else, however often it is taken:
@@ -68,8 +81,8 @@ impl Gpu {
     /// upper or lower case). Without `wanted`, [`ADAPTER_VARIABLE`](crate::adapter::ADAPTER_VARIABLE)
     /// decides, if it is set.
     ///
-    /// The device has the adapter's own limits, and those of [`optional_features`] that it
-    /// supports.
+    /// The device has the adapter's own limits, and those of
+    /// [`optional_features`](crate::adapter::optional_features) that it supports.
     ///
     /// # Errors
     /// There is no such adapter, or its driver reports an error.
@@ -86,16 +99,51 @@ impl Gpu {
         Ok(Self::share(adapter, device, queue))
     }
 
-    /// Shares a device that was opened elsewhere by [`device_descriptor`]. From now on
-    /// [`Gpu::check`] returns its errors.
+    /// What a device must have, for programs that open their own: see [`Gpu::of_host`].
+    pub fn requirements() -> Requirements {
+        Requirements::new()
+    }
+
+    /// Takes over a device that was opened elsewhere by [`device_descriptor`]: sets its handlers, so that from now on
+    /// [`Gpu::check`] returns its errors. For a program that only draws with this crate.
     pub fn share(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let fault = Fault::default();
-        let (of_work, of_device) = (fault.clone(), fault.clone());
-        device.on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
+        let gpu = Self::new(adapter, device, queue, Handlers::Ours);
+        let (of_work, of_device) = (gpu.fault.clone(), gpu.fault.clone());
+        gpu.device
+            .on_uncaptured_error(Arc::new(move |error| of_work.keep(complaint(error))));
         // Called also when the device is destroyed; then nothing checks for errors any more.
-        device.set_device_lost_callback(move |_, message| {
+        gpu.device.set_device_lost_callback(move |_, message| {
             of_device.keep(DeviceError::Lost(one_line(&message)));
         });
+        gpu
+    }
+
+    /// Draws with a device that another program has opened, with what [`Gpu::requirements`] asks for. Its handlers of
+    /// errors and of its loss stay that program's.
+    ///
+    /// [`Composite`](crate::Composite) returns the errors of what it does. Whatever else takes this value belongs into
+    /// [`Gpu::scoped`]; outside of it errors come to the program's handler. That the device is lost only the program
+    /// hears.
+    ///
+    /// # Errors
+    /// The adapter cannot draw, or the device was opened with less than is needed.
+    pub fn of_host(
+        adapter: &Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Result<Self, DeviceError> {
+        Self::requirements().check(adapter, &device)?;
+        Ok(Self::new(adapter, device, queue, Handlers::Hosts))
+    }
+
+    fn new(
+        adapter: &Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        handlers: Handlers,
+    ) -> Self {
+        let able = adapter.get_downlevel_capabilities().flags;
+        let shades_samples = able.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
         let adapter = name(adapter);
         if adapter.software {
             heap::keep_freed_memory();
@@ -104,7 +152,39 @@ impl Gpu {
             device,
             queue,
             adapter,
-            fault,
+            fault: Fault::default(),
+            handlers,
+            shades_samples,
+        }
+    }
+
+    /// Does some work and returns its errors, on a device of another program too: instead of coming to that program's
+    /// handler they are returned here. On a device of ours it is the work and a check.
+    ///
+    /// # Errors
+    /// The first error of the device, or else that of the work.
+    pub fn scoped<T, E: From<DeviceError>>(
+        &self,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        let done = self.caught(work);
+        // Within scopes checks find nothing, so an error of the work may be what follows from the device's.
+        self.check()?;
+        done
+    }
+
+    /// Does some work of this thread, whose errors are kept until they are taken.
+    pub(crate) fn caught<T>(&self, work: impl FnOnce() -> T) -> T {
+        match self.handlers {
+            Handlers::Ours => work(),
+            Handlers::Hosts => {
+                let scopes = Scopes::open(&self.device);
+                let done = work();
+                scopes
+                    .close()
+                    .for_each(|error| self.fault.keep(complaint(error)));
+                done
+            }
         }
     }
 
@@ -145,11 +225,6 @@ impl Gpu {
     pub fn largest_texture(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
-}
-
-/// Features that are used where an adapter supports them.
-pub fn optional_features() -> Features {
-    Features::TIMESTAMP_QUERY
 }
 
 /// The adapter's own limits: wgpu's defaults are a fraction of them.

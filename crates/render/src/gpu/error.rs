@@ -31,6 +31,17 @@ pub enum DeviceError {
         /// What it would have to have.
         lacks: Vec<&'static str>,
     },
+    /// A device that another program opened has less than is needed.
+    #[error(
+        "the device of {adapter} was opened with too little ({}): ask for the limits of Gpu::requirements",
+        .short.join(", ")
+    )]
+    Limited {
+        /// Name of the adapter.
+        adapter: String,
+        /// Names of limits, and what they are instead of what they would have to be.
+        short: Vec<String>,
+    },
     /// The driver did not open the adapter.
     #[error("{adapter} cannot be opened ({reason}): choose another adapter")]
     Refused {

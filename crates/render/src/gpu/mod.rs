@@ -8,5 +8,7 @@ pub(crate) mod error;
 pub(crate) mod growable;
 mod heap;
 pub(crate) mod parallel;
+pub(crate) mod requirements;
+mod scopes;
 pub(crate) mod shader;
 pub(crate) mod timing;

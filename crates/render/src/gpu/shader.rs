@@ -16,7 +16,7 @@ macro_rules! file {
 }
 
 /// All files of this crate, for imports.
-pub(crate) const FILES: [WgslFile; 50] = [
+pub(crate) const FILES: [WgslFile; 51] = [
     file!("sources", "surface_vertex.wgsl"),
     file!("sources", "surface_keys.wgsl"),
     file!("sources", "octahedral.wgsl"),
@@ -65,6 +65,7 @@ pub(crate) const FILES: [WgslFile; 50] = [
     file!("shading", "mask.wgsl"),
     file!("shading", "present.wgsl"),
     file!("output", "ids.wgsl"),
+    file!("output/composite", "composite.wgsl"),
     file!("output/static_picture", "collect.wgsl"),
     file!("output/static_picture", "recolor.wgsl"),
 ];
@@ -86,12 +87,11 @@ pub(crate) fn shader(name: &'static str, parts: &ShaderParts) -> Shader {
 impl Gpu {
     /// Compiles a shader. Errors of the compiler, which [`Gpu::check`] returns, name file and line.
     pub(crate) fn shader_module(&self, shader: &Shader) -> wgpu::ShaderModule {
-        let module = self
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(shader.name),
-                source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
-            });
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: Some(shader.name),
+            source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
+        };
+        let module = self.caught(|| self.device.create_shader_module(descriptor));
         // Others compile beside it.
         let label = format!("'{}'", shader.name);
         self.explain_fault(|message| match message.contains(&label) {

@@ -72,7 +72,7 @@ impl Identifier {
         let shaders: Vec<Shader> = shaders
             .map(|(shader, &id)| ids_shader(&source.shader(shader), id))
             .collect();
-        let pipelines = side_by_side(shaders.len(), |shader| {
+        let pipelines = side_by_side(gpu, shaders.len(), |shader| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("ids"),
                 bind_group_layouts: &[Some(layouts[shader]), Some(&renderer.shader.layout)],

@@ -1,5 +1,7 @@
-//! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; picking ids.
+//! Pictures: drawn in tiles for a file, or step by step for a window; pictures that are colored anew; picking ids;
+//! cells in a pass of another program.
 
+pub(crate) mod composite;
 pub(crate) mod extent;
 pub(crate) mod host;
 pub(crate) mod ids;

@@ -5,6 +5,7 @@ use neurotess_refine::wgsl::{Shader, WgslFile};
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 
 use crate::gpu::shader::{FILES, file};
+use crate::output::composite::{self, composite_shader};
 use crate::output::ids::ids_shader;
 use crate::output::static_picture::collect::{self, collect_shader};
 use crate::output::static_picture::recolor::{self, recolor_shader};
@@ -189,6 +190,11 @@ fn pictures_bind_what_their_shaders_have() {
         assert_bindings(&mask_shader(samples), "gather", &groups);
     }
     assert_bindings(&present_shader(), "show", &vec![show_entries()]);
+    for (samples, per_sample) in [(1, false), (4, false), (4, true)] {
+        let groups = vec![composite::entries(samples, per_sample)];
+        let shader = composite_shader(samples, per_sample);
+        assert_bindings(&shader, "compose", &groups);
+    }
     let groups = vec![recolor::entries()];
     assert_bindings(&recolor_shader(), "recolor_pixels", &groups);
 }
@@ -238,6 +244,7 @@ fn every_file_is_used_and_begins_with_what_it_is() {
         "mask",
         "present",
         "ids",
+        "composite",
         "keyed",
         "collect",
         "recolor",

@@ -189,8 +189,9 @@ impl Finisher {
                 last,
             ],
         ) = beside(
+            gpu,
             || (last == Last::Gather).then(|| pipeline(FINDING[1])),
-            || all_of(|place| pipeline(entries[place])),
+            || all_of(gpu, |place| pipeline(entries[place])),
         );
         Self {
             find_blocks,

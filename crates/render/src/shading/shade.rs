@@ -199,7 +199,7 @@ impl DrawPass<'_> {
             .map(|shader| source.layout(shader))
             .collect();
         let both_sides: Vec<bool> = (0..shaders.len()).map(both_sides).collect();
-        side_by_side(shaders.len(), |shader| {
+        side_by_side(gpu, shaders.len(), |shader| {
             let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
                 bind_group_layouts: &[Some(layouts[shader]), Some(layout)],
@@ -259,6 +259,8 @@ pub(crate) struct PipelineKey {
     /// interpolated: where triangles are small, setting up one more color for each took software
     /// Vulkan as long as all the rest of drawing them.
     pub(crate) edged: bool,
+    /// Whether what is translucent has depths, too. In pictures it has none, since it darkens no corners.
+    pub(crate) all_depths: bool,
 }
 
 impl PipelineKey {
@@ -270,6 +272,15 @@ impl PipelineKey {
             cut: look.clip.is_some(),
             valued: table.values.instances() > 0,
             edged: !table.scale.is_empty() && look.edges_against().is_some(),
+            all_depths: false,
+        }
+    }
+
+    /// For passes of other programs, where all that shows needs a depth.
+    pub(crate) fn with_all_depths(self) -> Self {
+        Self {
+            all_depths: true,
+            ..self
         }
     }
 
@@ -295,6 +306,7 @@ pub(crate) fn constants(key: PipelineKey) -> Constants {
     let mut constants = Constants::default();
     constants.u32("SAMPLES", key.samples);
     constants.bool("VALUED", key.valued);
+    constants.bool("ALL_DEPTHS", key.all_depths);
     for (name, value) in [
         ("CATEGORY_BIT", CATEGORY_BIT),
         ("HIGHLIGHTED", HIGHLIGHTED),

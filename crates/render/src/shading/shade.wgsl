@@ -374,7 +374,7 @@ fn fragment(in: Varying, @builtin(front_facing) front: bool) -> Sample {
     let depth = -dot(in.relative.xyz, shade.backward);
     out.depth = unpack4x8unorm(bitcast<u32>(select(depth, 1e-20, depth == 0.0)));
 #ifdef SHEETS
-    if is_translucent() { out.depth = NO_DEPTH; }
+    if is_translucent() && !ALL_DEPTHS { out.depth = NO_DEPTH; }
 #endif
 #ifdef MULTISAMPLED
     out.mask = mask;

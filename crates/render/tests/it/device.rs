@@ -23,7 +23,19 @@ fn complaints_are_kept_until_asked_for() {
 }
 
 /// A source whose shader does not compile.
-struct Broken(wgpu::BindGroupLayout);
+pub(crate) struct Broken(wgpu::BindGroupLayout);
+
+impl Broken {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: None,
+                entries: &[],
+            });
+        Self(layout)
+    }
+}
 
 impl VertexSource for Broken {
     fn key(&self) -> SourceKey {
@@ -54,16 +66,10 @@ impl VertexSource for Broken {
 #[neurotess_testing::test(needs(gpu))]
 fn what_the_driver_says_of_a_shader_names_file_and_line() {
     let gpu = device();
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &[],
-        });
     let camera = Camera::new(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.5).expect("a camera");
     let drawn = render_still(
         &gpu,
-        &mut Broken(layout),
+        &mut Broken::new(&gpu),
         &Viewpoint { camera, near: 0.1 },
         &ColorTable::default(),
         &PictureOptions::default(),

@@ -4,6 +4,7 @@ mod adapter;
 mod adaptive;
 mod common;
 mod compared;
+mod composite;
 mod cracks;
 mod device;
 mod exploration;

@@ -42,7 +42,11 @@ pub(crate) fn renderer(gpu: &Gpu, mesh: &CoarseMesh) -> ProgressiveRenderer {
 
 /// The texture's pixels; their width must be a multiple of 64.
 pub(crate) fn pixels(gpu: &Gpu, renderer: &ProgressiveRenderer) -> Image {
-    let texture = renderer.texture().expect("a picture");
+    read(gpu, renderer.texture().expect("a picture"))
+}
+
+/// The pixels of a texture of four bytes each; their width must be a multiple of 64.
+pub(crate) fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Image {
     let (width, height) = (texture.width(), texture.height());
     let row = (4 * width).next_multiple_of(256);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -57,6 +57,7 @@ impl TileRenderer {
         let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let (shader, finisher) = beside(
+            gpu,
             || Shader::new(gpu, source, key),
             || Finisher::new(gpu, samples, Last::Gather),
         );

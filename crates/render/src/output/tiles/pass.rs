@@ -24,7 +24,7 @@ pub(crate) struct TilePass {
 }
 
 impl TilePass {
-    pub(super) fn round(round: usize, rounds: usize) -> Self {
+    pub(crate) fn round(round: usize, rounds: usize) -> Self {
         Self {
             round,
             shaders: 0..usize::MAX,

@@ -82,7 +82,7 @@ impl Passes {
     pub(crate) fn new(gpu: &Gpu, page: &wgpu::BindGroupLayout, layouts: &WorkLayouts) -> Self {
         let device = &gpu.device;
         let shaders = modules();
-        let modules: [_; 7] = all_of(|module| gpu.shader_module(&shaders[module]));
+        let modules: [_; 7] = all_of(gpu, |module| gpu.shader_module(&shaders[module]));
         let pipeline = |module: usize, entry, own: &wgpu::BindGroupLayout| {
             let groups = [page, &layouts.clusters, own].map(Some);
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -112,7 +112,7 @@ impl Passes {
             scan_buckets,
             flatten,
             scatter,
-        ] = all_of(|place| {
+        ] = all_of(gpu, |place| {
             let (module, entry, written) = ENTRIES[place];
             pipeline(module, entry, layouts.written(written))
         });

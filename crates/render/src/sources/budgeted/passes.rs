@@ -157,7 +157,7 @@ impl Passes {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, DeviceError> {
         let device = &gpu.device;
         let module = gpu.shader_module(&select_shader());
-        let made = side_by_side(STEPS.len(), |step| {
+        let made = side_by_side(gpu, STEPS.len(), |step| {
             let step = &STEPS[step];
             let layout = group_layout(device, step.entry, &step.entries());
             let of_pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
