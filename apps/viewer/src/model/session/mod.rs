@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::model::document::{
-    Detail, Dimension, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, Trace,
+    Detail, Dimension, Look, MarkerOptions, MeshEntry, NeuronState, SavedView, SomaEdit, Trace,
 };
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
@@ -141,14 +141,21 @@ impl Session {
             let path = relative(state.circuits.file(id)?, folder);
             Some(CircuitEntry { path })
         });
-        let neuron = document.neurons.iter().map(|neuron| NeuronEntry {
-            node: neuron.node.and_then(node),
-            name: neuron.name.clone(),
-            file: used.binary_search(&neuron.source).unwrap_or(0),
-            hidden: neuron.hidden,
-            selected: neuron.selected,
-            clamped: neuron.clamped,
-            place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+        let neuron = document.neurons.iter().enumerate().map(|(index, neuron)| {
+            let NeuronState {
+                hidden,
+                selected,
+                clamped,
+            } = document.neurons.state(index);
+            NeuronEntry {
+                node: neuron.node.and_then(node),
+                name: neuron.name.clone(),
+                file: used.binary_search(&neuron.source).unwrap_or(0),
+                hidden,
+                selected,
+                clamped,
+                place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+            }
         });
         Self {
             version: VERSION,

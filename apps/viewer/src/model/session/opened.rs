@@ -2,7 +2,7 @@
 
 use super::{NeuronEntry, Session};
 use crate::model::circuits::{self, Circuits};
-use crate::model::document::{Dimension, Neuron, Trace};
+use crate::model::document::{Dimension, Neuron, Neurons, Trace};
 use crate::model::ids::{CircuitNode, SourceId};
 use crate::model::state::State;
 
@@ -22,8 +22,24 @@ impl Session {
         traces.filter_map(|t| t.renumbered(index)).collect()
     }
 
+    /// The neurons whose tracings are open: `ids`, by file. Also: by neuron of the session, its index among these.
+    pub(crate) fn neurons_of(
+        &self,
+        ids: &[Option<SourceId>],
+        state: &State,
+    ) -> (Neurons, Vec<Option<usize>>) {
+        let mut neurons = Neurons::default();
+        let opened = self.neuron.iter().map(|entry| {
+            let id = ids.get(entry.file).copied().flatten()?;
+            neurons.push_as(self.neuron_of(entry, id, state), entry.state());
+            Some(neurons.len() - 1)
+        });
+        let opened = opened.collect();
+        (neurons, opened)
+    }
+
     /// The neuron of an entry, whose tracing is open as `source`.
-    pub(crate) fn neuron_of(&self, entry: &NeuronEntry, source: SourceId, state: &State) -> Neuron {
+    fn neuron_of(&self, entry: &NeuronEntry, source: SourceId, state: &State) -> Neuron {
         let node = self.node_of(entry, &state.circuits);
         let traced = node.and_then(|of| {
             let circuit = state.circuits.get(of.circuit)?;
