@@ -1,8 +1,8 @@
-//! What a frame of the window costs in which nothing changes, and one in which the camera turns, with thousands
-//! of neurons.
+//! What a frame of the window costs in which nothing changes, one in which the camera turns, and one in which another
+//! neuron is selected, with thousands of neurons.
 //!
 //! `cargo run -p neurotess-viewer --example idle -- 2000 10000` prints milliseconds of the processor for each
-//! number of neurons.
+//! number of neurons, and how much memory 200 selections take (on Linux).
 #![allow(
     clippy::print_stdout,
     clippy::unwrap_used,
@@ -25,6 +25,9 @@ use neurotess_viewer::{Command, Viewer, wgpu_setup};
 type Window = Harness<'static, Option<Viewer>>;
 
 const FRAMES: usize = 30;
+
+/// As many edits as the history keeps.
+const CLICKS: usize = 200;
 
 fn main() {
     let counts = std::env::args().skip(1);
@@ -58,6 +61,30 @@ fn measure(count: usize) {
             (0..FRAMES).map(|_| turned(&mut window)).collect(),
         );
     }
+    run(&mut window, Edit::SetGrid(false));
+    let before = resident();
+    let times = (0..CLICKS).map(|i| {
+        // Not neighbors, as clicks are not.
+        let select = Edit::Select(vec![i * count / CLICKS], false);
+        viewer(&mut window).state.run(select);
+        frame(&mut window)
+    });
+    report(
+        &format!("{count} neurons, another is selected"),
+        times.collect(),
+    );
+    println!(
+        "memory of {CLICKS} selections: {:.1} MB",
+        resident() - before
+    );
+}
+
+/// Resident memory of this process, in MB.
+fn resident() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"));
+    let kb = line.unwrap().split_whitespace().nth(1).unwrap();
+    kb.parse::<f64>().unwrap() * 1024.0 / 1e6
 }
 
 /// Milliseconds of one frame.

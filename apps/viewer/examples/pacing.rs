@@ -65,9 +65,8 @@ fn main() {
             .neurons
             .push(Neuron::new(source, format!("n{i}")));
     }
-    let mut index = 0..;
-    let keeps = |_: &Neuron| index.next().is_some_and(|i| i < neurons);
-    state.document.neurons.retain(keeps);
+    let more = (neurons..state.document.neurons.len()).collect();
+    state.document.neurons.remove(&more);
     state.document.grid = true;
     state.run(Command::Home);
     settle(&mut window);

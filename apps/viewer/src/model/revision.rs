@@ -20,10 +20,10 @@ impl Revision {
     }
 }
 
-/// A value whose revision changes whenever the value may have been changed.
+/// A value whose revision changes whenever the value may have been changed. Copies share it until then.
 #[derive(Clone, Debug, Default)]
 pub struct Tracked<T> {
-    value: T,
+    value: Arc<T>,
     revision: Revision,
 }
 
@@ -42,10 +42,10 @@ impl<T> Deref for Tracked<T> {
     }
 }
 
-impl<T> DerefMut for Tracked<T> {
+impl<T: Clone> DerefMut for Tracked<T> {
     fn deref_mut(&mut self) -> &mut T {
         self.revision = Revision::next();
-        &mut self.value
+        Arc::make_mut(&mut self.value)
     }
 }
 

@@ -164,11 +164,9 @@ impl State {
     /// What files are named after by themselves: the one cell that is selected or shown, or all of them.
     pub(crate) fn usual_name(&self) -> String {
         let neurons = &self.document.neurons;
-        let one = match neurons.selected() {
-            [one] => neurons.get(*one),
-            _ if neurons.len() == 1 => neurons.first(),
-            _ => None,
-        };
+        let only = (neurons.len() == 1).then_some(0);
+        let one = neurons.selected().only().or(only);
+        let one = one.and_then(|one| neurons.get(one));
         let name = one.map_or("neurons", |neuron| &neuron.name);
         file_name(name)
     }
@@ -206,7 +204,7 @@ fn replacing(command: Command) -> Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::command::PlotOf;
+    use crate::model::command::{Edit, PlotOf};
     use crate::model::document::{Neuron, SourceId};
     use crate::model::settings::Settings;
     use crate::model::view::View;
@@ -275,10 +273,10 @@ mod tests {
     fn whatever_is_saved_asks_before_it_replaces() {
         let mut state = State::new(Settings::default());
         for i in 0..2 {
-            let mut neuron = Neuron::new(SourceId(i), format!("n{i}"));
-            neuron.selected = i == 0;
+            let neuron = Neuron::new(SourceId(i), format!("n{i}"));
             state.document.neurons.push(neuron);
         }
+        state.run(Edit::Select(vec![0], false));
         state.views.key_views = vec![View::default(), View::default()];
         let folder = tempfile::tempdir().expect("a folder");
         for (file, command) in every_kind(&state, folder.path()) {

@@ -180,14 +180,15 @@ pub(crate) struct SceneInstance {
 /// Instances of all neurons. `sources`: the templates, sorted by id.
 pub(crate) fn instances(state: &State, sources: &[SceneTemplate]) -> Vec<SceneInstance> {
     let placements = state.placements();
-    let neurons = state.document.neurons.iter().zip_eq(placements.iter());
-    let instances = neurons.map(|(neuron, &placement)| {
+    let neurons = &state.document.neurons;
+    let placed = neurons.iter().zip_eq(placements.iter()).enumerate();
+    let instances = placed.map(|(index, (neuron, &placement))| {
         let source = sources.binary_search_by_key(&neuron.source, |s| s.id);
         SceneInstance {
             source: source.unwrap_or(0),
             placement,
             // A neuron without a template yet is not drawn, but keeps its index.
-            hidden: neuron.hidden || source.is_err(),
+            hidden: !neurons.shows(index) || source.is_err(),
         }
     });
     instances.collect()
@@ -275,26 +276,27 @@ fn bounding_spheres(content: &SceneContent) -> Vec<BoundingSphere> {
 /// States of all neurons, for the shading.
 pub(crate) fn states(document: &Document) -> Vec<u32> {
     let look = &document.look;
-    let any = !document.neurons.selected().is_empty();
+    let selected = document.neurons.selected();
     let parts = match look.parts {
         VisibleParts::All => 0,
         VisibleParts::Soma => WITHOUT_NEURITES,
         VisibleParts::Neurites => WITHOUT_SOMA,
     };
-    let state = |selected: bool| {
-        let highlighted = if selected && look.highlight_selected {
+    let state = |index: usize| {
+        let is_selected = selected.contains(index);
+        let highlighted = if is_selected && look.highlight_selected {
             HIGHLIGHTED
         } else {
             0
         };
-        let ghosted = if any && !selected && look.ghost_others {
+        let ghosted = if !selected.is_empty() && !is_selected && look.ghost_others {
             GHOSTED
         } else {
             0
         };
         parts | highlighted | ghosted
     };
-    document.neurons.iter().map(|n| state(n.selected)).collect()
+    (0..document.neurons.len()).map(state).collect()
 }
 
 /// Light, wireframe and colors of states. `least_width`: of neurites (pixels).

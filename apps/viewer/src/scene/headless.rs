@@ -86,17 +86,10 @@ pub fn draw_session(
     state.document.markers = session.markers.clone();
     *state.document.meshes = session.mesh.clone();
     state.playback.pace = session.playback;
-    let mut opened = Vec::new();
-    for entry in &session.neuron {
-        let id = ids.get(entry.file).copied().flatten();
-        opened.push(id.map(|id| {
-            let neuron = session.neuron_of(entry, id, &state);
-            state.document.neurons.push(neuron);
-            state.document.neurons.len() - 1
-        }));
-    }
+    let (neurons, opened) = session.neurons_of(&ids, &state);
+    state.document.neurons = neurons;
     *state.document.dimensions = session.dimensions(&opened);
-    drawn.neurons = state.document.neurons.iter().filter(|n| !n.hidden).count();
+    drawn.neurons = state.shown();
     while let Some(file) = state.mesh_due() {
         let read = io::meshes::read(&file);
         state.set_mesh(file, read);

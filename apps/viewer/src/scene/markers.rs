@@ -128,11 +128,13 @@ impl MarkerRequest {
         let (document, data) = (&state.document, &state.marker_data);
         let options = document.markers.clone();
         let neurons = &document.neurons;
-        let selected = options.of_selected && !neurons.selected().is_empty();
+        let selected = neurons.selected();
+        let of_selected = options.of_selected && !selected.is_empty();
         let placements = state.placements();
-        let placed = neurons.iter().zip(placements.iter());
-        let placed = placed.filter(|(n, _)| !n.hidden && (n.selected || !selected));
-        let shown = placed.filter_map(|(neuron, placement)| {
+        let placed = neurons.iter().zip(placements.iter()).enumerate();
+        let placed =
+            placed.filter(|(i, _)| neurons.shows(*i) && (!of_selected || selected.contains(*i)));
+        let shown = placed.filter_map(|(_, (neuron, placement))| {
             let node = neuron.node?;
             Some((node.circuit, node.node, moved(&neuron.traced, placement)))
         });

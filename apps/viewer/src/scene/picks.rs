@@ -153,8 +153,7 @@ impl Picks {
                     return hovered | if is(markers[1]) { SELECTED | PICKED } else { 0 };
                 }
             };
-            let neuron = document.neurons.get(seen.neuron);
-            let selected = if neuron.is_some_and(|n| n.selected) {
+            let selected = if document.neurons.selected().contains(seen.neuron) {
                 SELECTED
             } else {
                 0
@@ -267,6 +266,7 @@ mod tests {
 
     use super::*;
     use crate::model::document::{Neuron, SourceId};
+    use crate::model::index_set::IndexSet;
 
     fn picks() -> Picks {
         // Ten pixels in a row; the fourth shows a section, the fifth and sixth a soma.
@@ -365,7 +365,7 @@ mod tests {
     fn masks_show_selected_neurons_and_hovered_parts() {
         let mut document = Document::default();
         document.neurons.push(Neuron::new(SourceId(0), "n".into()));
-        document.neurons.set_states(|_, _| (false, true));
+        document.neurons.select(IndexSet::below(1));
         let facts = |_, section| {
             Some(SectionFacts {
                 neurite: section / 2,
@@ -385,7 +385,7 @@ mod tests {
         // The clicked part keeps its outline while the neuron is selected.
         let mask = picks().mask(&document, [None, hovered(CellPart::Soma)], [None; 2], facts);
         assert_eq!(mask, [0, 0, 0, 1, 5, 5, 0, 0, 0, 0]);
-        document.neurons.set_states(|_, _| (false, false));
+        document.neurons.select(IndexSet::default());
         let mask = picks().mask(&document, [None, hovered(CellPart::Soma)], [None; 2], facts);
         assert_eq!(mask, [0; 10]);
     }
@@ -421,7 +421,7 @@ mod tests {
             mask(&document, [Some(Point(7)), Some(Point(8))]),
             [0, 2, 0, 5, 0]
         );
-        document.neurons.set_states(|_, _| (false, true));
+        document.neurons.select(IndexSet::below(1));
         assert_eq!(mask(&document, [None; 2]), [1, 1, 1, 1, 0]);
         assert_eq!(mask(&document, [None, Some(Point(7))]), [1, 5, 1, 1, 0]);
     }

@@ -47,8 +47,8 @@ impl SceneTemplate {
 
 /// Templates of the neurons in the list, by the ids of their tracings.
 pub(crate) fn templates(state: &State) -> Vec<SceneTemplate> {
-    let used = state.document.neurons.sources().iter();
-    let templates = used.filter_map(|&id| {
+    let used = state.document.neurons.sources();
+    let templates = used.filter_map(|id| {
         let source = state.sources.get(id)?;
         Some(SceneTemplate {
             id,

@@ -135,16 +135,16 @@ fn clamping_has_a_key_is_undone_and_kept_in_sessions() {
     run(&mut window, Edit::Select(vec![1], false));
     window.key_press(Key::C);
     settle(&mut window);
-    assert_eq!(state(&mut window).document.neurons.clamped(), [1]);
+    assert_eq!(state(&mut window).document.neurons.clamped().to_vec(), [1]);
     window.key_press(Key::C);
     settle(&mut window);
     assert!(state(&mut window).document.neurons.clamped().is_empty());
     run(&mut window, Command::Undo);
-    assert_eq!(state(&mut window).document.neurons.clamped(), [1]);
+    assert_eq!(state(&mut window).document.neurons.clamped().to_vec(), [1]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("kept.neurotess");
     run(&mut window, Command::SaveSession(file.clone()));
     let mut other = with_samples(&[]);
     run(&mut other, Command::Open(vec![file]));
-    assert_eq!(state(&mut other).document.neurons.clamped(), [1]);
+    assert_eq!(state(&mut other).document.neurons.clamped().to_vec(), [1]);
 }

@@ -137,7 +137,7 @@ fn a_session_is_dropped() {
     other.step();
     drop_on(&mut other, &[&file]);
     assert_eq!(names(&mut other), ["star", "granule"]);
-    assert!(state(&mut other).document.neurons[0].hidden);
+    assert!(!state(&mut other).document.neurons.shows(0));
     fs::write(&file, "version = 1\ngrid = 3\n").expect("written");
     drop_on(&mut other, &[&file]);
     assert!(

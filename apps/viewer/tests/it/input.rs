@@ -232,5 +232,5 @@ fn all_clicks_that_wait_are_answered_in_one_frame() {
     let selects = |c: &&Command| matches!(c, Command::Edit(Edit::Select(..) | Edit::SelectNone));
     let selections = list.borrow().iter().filter(selects).count();
     assert_eq!(selections, clicks.len(), "{:?}", list.borrow());
-    assert_eq!(state(&mut window).document.neurons.selected(), [0]);
+    assert_eq!(state(&mut window).document.neurons.selected().to_vec(), [0]);
 }

@@ -9,6 +9,7 @@ use crate::model::document::{
     Detail, Dimension, Document, Look, MarkerOptions, MeshEntry, SavedView, SomaEdit, SourceId,
     SpineEdit, TracePlace,
 };
+use crate::model::index_set::IndexSet;
 
 /// A change of the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,37 +178,36 @@ impl Edit {
     /// Changes the document.
     pub fn apply(self, document: &mut Document) {
         let neurons = &mut document.neurons;
+        let (hidden, selected) = (neurons.hidden().clone(), neurons.selected().clone());
+        let all = IndexSet::below(neurons.len());
         match self {
-            Self::Select(mut which, add) => {
-                which.sort_unstable();
-                let is = |i: usize| which.binary_search(&i).is_ok();
+            Self::Select(which, add) => {
                 // If all of them are selected already, they are unselected.
-                let all = which
-                    .iter()
-                    .all(|&i| neurons.get(i).is_some_and(|n| n.selected));
-                neurons.set_states(|i, n| {
-                    let selected = match add {
-                        true if is(i) => !all,
-                        true => n.selected,
-                        false => is(i),
-                    };
-                    (n.hidden, selected)
+                let all = which.iter().all(|&i| selected.contains(i));
+                let there = which.into_iter().filter(|&i| i < neurons.len());
+                let which = there.collect();
+                neurons.select(match (add, all) {
+                    (true, true) => selected.without(&which),
+                    (true, false) => selected.with(&which),
+                    (false, _) => which,
                 });
             }
-            Self::SelectAll => neurons.set_states(|_, n| (n.hidden, !n.hidden)),
-            Self::SelectNone => neurons.set_states(|_, n| (n.hidden, false)),
-            Self::SelectOthers => {
-                neurons.set_states(|_, n| (n.hidden, !n.selected && !n.hidden));
-            }
-            Self::Hide => neurons.set_states(|_, n| (n.hidden || n.selected, false)),
+            Self::SelectAll => neurons.select(all.without(&hidden)),
+            Self::SelectNone => neurons.select(IndexSet::default()),
+            Self::SelectOthers => neurons.select(all.without(&selected).without(&hidden)),
+            Self::Hide => neurons.set_states(hidden.with(&selected), IndexSet::default()),
             // Without a selection, nothing would be left to show.
-            Self::Isolate if neurons.selected().is_empty() => {}
-            Self::Isolate => neurons.set_states(|_, n| (!n.selected, n.selected)),
-            Self::ShowAll => neurons.set_states(|_, n| (false, n.selected)),
-            Self::SetHidden(which, hidden) => neurons.set_states(|i, n| match i == which {
-                true => (hidden, n.selected && !hidden),
-                false => (n.hidden, n.selected),
-            }),
+            Self::Isolate if selected.is_empty() => {}
+            Self::Isolate => neurons.set_states(all.without(&selected), selected),
+            Self::ShowAll => neurons.set_states(IndexSet::default(), selected),
+            Self::SetHidden(which, hides) if which < neurons.len() => {
+                let which = IndexSet::from_iter([which]);
+                match hides {
+                    true => neurons.set_states(hidden.with(&which), selected.without(&which)),
+                    false => neurons.set_states(hidden.without(&which), selected),
+                }
+            }
+            Self::SetHidden(..) => {}
             Self::Clamp(clamped) => neurons.clamp_selected(clamped),
             Self::UnclampAll => neurons.unclamp_all(),
             Self::Remove => document.remove_selected(),
@@ -243,11 +243,7 @@ impl Edit {
             }
             Self::SetSpines(sources, spines) => document.set_spines(&sources, spines),
             Self::GrowSpines(spines) => {
-                let sources = match document.neurons.selected_sources() {
-                    [] => document.neurons.sources(),
-                    selected => selected,
-                };
-                let sources = sources.to_vec();
+                let sources = document.neurons.meant_sources();
                 document.set_spines(&sources, spines);
             }
             Self::SetLook(look) => document.look = *look,
@@ -356,12 +352,12 @@ mod tests {
         let mut doc = document();
         Edit::Select(vec![1, 2], false).apply(&mut doc);
         Edit::Hide.apply(&mut doc);
-        assert!(doc.neurons[1].hidden && selected(&doc).is_empty());
+        assert!(!doc.neurons.shows(1) && selected(&doc).is_empty());
         Edit::SelectAll.apply(&mut doc);
         assert_eq!(selected(&doc), [0, 3]);
         Edit::Isolate.apply(&mut doc);
         Edit::ShowAll.apply(&mut doc);
-        assert!(doc.neurons.iter().all(|n| !n.hidden));
+        assert!(doc.neurons.hidden().is_empty());
         Edit::Remove.apply(&mut doc);
         assert_eq!(doc.neurons.len(), 2);
     }

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use neurotess::render::Placement;
 
+use crate::model::index_set::IndexSet;
 use crate::model::revision::Tracked;
 
 pub use crate::model::ids::{CircuitNode, SourceId};
@@ -25,7 +26,7 @@ pub use dimension::{Anchor, Dimension};
 pub use look::{ColorBy, Cut, Lighting, Look, PAPER, VisibleParts};
 pub use markers::MarkerOptions;
 pub use meshes::{MeshEntry, is_mesh};
-pub use neurons::{NeuronRevisions, Neurons};
+pub use neurons::{NeuronRevisions, NeuronState, Neurons};
 pub(crate) use placement::PlacementEntry;
 pub use saved_view::SavedView;
 pub use soma::{Keep, Method, SomaEdit};
@@ -74,12 +75,6 @@ pub struct Neuron {
     pub placement: Placement,
     /// Where it was traced, or where its circuit places it: there it is until it is moved.
     pub traced: Placement,
-    /// Whether it is hidden.
-    pub hidden: bool,
-    /// Whether it is selected.
-    pub selected: bool,
-    /// Whether it is clamped: fine whatever the mode, also while the camera moves.
-    pub clamped: bool,
 }
 
 impl Neuron {
@@ -91,9 +86,6 @@ impl Neuron {
             name,
             placement: Placement::default(),
             traced: Placement::default(),
-            hidden: false,
-            selected: false,
-            clamped: false,
         }
     }
 }
@@ -144,7 +136,6 @@ impl Document {
     /// Adds a copy of each selected neuron, moved by `way` (µm), and selects the copies alone. A copy is no node of
     /// a circuit: its synapses and the values of a report are those of the one node.
     pub(crate) fn duplicate_selected(&mut self, way: DVec3) {
-        let selected = self.neurons.iter().filter(|neuron| neuron.selected);
         let copy = |neuron: &Neuron| Neuron {
             node: None,
             name: format!("{} (copy)", neuron.name),
@@ -155,29 +146,26 @@ impl Document {
             traced: Placement::default(),
             ..neuron.clone()
         };
-        let copies: Vec<Neuron> = selected.map(copy).collect();
+        let mut copies = Neurons::default();
+        for index in self.selected() {
+            copies.push_as(copy(&self.neurons[index]), self.neurons.state(index));
+        }
         if copies.is_empty() {
             return;
         }
-        self.neurons.set_states(|_, n| (n.hidden, false));
-        for copy in copies {
-            self.neurons.push(copy);
-        }
+        self.neurons.select(IndexSet::default());
+        self.neurons.append(&copies);
     }
 
     /// Removes the selected neurons, and the dimensions and traces that refer to them.
     pub(crate) fn remove_selected(&mut self) {
-        let mut kept = 0;
-        let number = |neuron: &Neuron| {
-            kept += usize::from(!neuron.selected);
-            (!neuron.selected).then(|| kept - 1)
-        };
-        let numbers: Vec<Option<usize>> = self.neurons.iter().map(number).collect();
-        self.neurons.retain(|neuron| !neuron.selected);
-        if kept == numbers.len() {
+        let removed = self.neurons.selected().clone();
+        if removed.is_empty() {
             return;
         }
-        let number = |neuron: usize| numbers.get(neuron).copied().flatten();
+        let count = self.neurons.len();
+        self.neurons.remove(&removed);
+        let number = |neuron: usize| removed.renumbered(neuron).filter(|_| neuron < count);
         if !self.dimensions.is_empty() {
             let dimensions = self.dimensions.iter();
             *self.dimensions = dimensions.filter_map(|d| d.renumbered(number)).collect();
@@ -190,13 +178,13 @@ impl Document {
 
     /// Indices of the selected neurons.
     pub fn selected(&self) -> impl Iterator<Item = usize> {
-        self.neurons.selected().iter().copied()
+        self.neurons.selected().iter()
     }
 }
 
 /// Placements of neurons side by side. `extents`: center and size (µm) of each at its own
 /// placement.
-pub fn grid(neurons: &[Neuron], extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
+pub fn grid(neurons: &Neurons, extents: &[(DVec3, DVec3)]) -> Vec<Placement> {
     let columns = (neurons.len() as f64).sqrt().ceil().max(1.0) as usize;
     let widest = |axis: usize| {
         extents
@@ -221,7 +209,7 @@ mod tests {
 
     #[test]
     fn neurons_on_a_grid_do_not_overlap() {
-        let neurons: Vec<Neuron> = (0..5)
+        let neurons: Neurons = (0..5)
             .map(|i| Neuron::new(SourceId(i), String::new()))
             .collect();
         let extents: Vec<(DVec3, DVec3)> = (0..5)

@@ -7,6 +7,7 @@ use neurotess::plot::COLORS;
 use serde::{Deserialize, Serialize};
 
 use super::Document;
+use crate::model::index_set::IndexSet;
 
 /// A place on a neuron; a report's compartment there is the nearest one of the section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,10 +165,12 @@ impl Document {
         if place.neuron >= self.neurons.len() {
             return;
         }
-        self.neurons.set_states(|i, neuron| {
-            let selected = i == place.neuron || (add && neuron.selected);
-            (neuron.hidden, selected && !neuron.hidden)
-        });
+        let mut selected = IndexSet::from_iter([place.neuron]);
+        if add {
+            selected = selected.with(self.neurons.selected());
+        }
+        let selected = selected.without(self.neurons.hidden());
+        self.neurons.select(selected);
         let there = self.traces.iter().position(|trace| trace.place == place);
         match (there, add) {
             (Some(there), true) => {
@@ -269,7 +272,7 @@ mod tests {
         document.plot(at(1, 0.5), true);
         assert_eq!(document.traces[2].color, COLORS[1], "it is free again");
         // A neuron that is removed takes its traces with it.
-        document.neurons.set_states(|i, _| (false, i == 0));
+        document.neurons.select(IndexSet::from_iter([0]));
         document.remove_selected();
         let left: Vec<usize> = document.traces.iter().map(|t| t.place.neuron).collect();
         assert_eq!(left, [1, 0]);

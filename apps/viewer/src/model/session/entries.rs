@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::document::{Neuron, PlacementEntry, SomaEdit};
+use crate::model::document::{Neuron, NeuronState, PlacementEntry, SomaEdit};
 use crate::model::ids::SourceId;
 
 /// A circuit.
@@ -68,10 +68,16 @@ impl NeuronEntry {
     pub(crate) fn neuron(&self, source: SourceId) -> Neuron {
         Neuron {
             placement: self.place.map(Into::into).unwrap_or_default(),
+            ..Neuron::new(source, self.name.clone())
+        }
+    }
+
+    /// How it shows.
+    pub(crate) fn state(&self) -> NeuronState {
+        NeuronState {
             hidden: self.hidden,
             selected: self.selected && !self.hidden,
             clamped: self.clamped,
-            ..Neuron::new(source, self.name.clone())
         }
     }
 }

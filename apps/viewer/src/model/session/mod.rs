@@ -1,6 +1,7 @@
 //! Sessions: a file that people can read and change.
 
 mod entries;
+mod opened;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,11 +11,10 @@ use neurotess::output::{Existing, write_whole};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::model::circuits::{self, Circuits};
 use crate::model::document::{
-    Detail, Dimension, Look, MarkerOptions, MeshEntry, Neuron, SavedView, SomaEdit, Trace,
+    Detail, Dimension, Look, MarkerOptions, MeshEntry, NeuronState, SavedView, SomaEdit, Trace,
 };
-use crate::model::ids::{CircuitId, CircuitNode, SourceId};
+use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::playback::Pace;
 use crate::model::split::Split;
 use crate::model::state::State;
@@ -141,14 +141,21 @@ impl Session {
             let path = relative(state.circuits.file(id)?, folder);
             Some(CircuitEntry { path })
         });
-        let neuron = document.neurons.iter().map(|neuron| NeuronEntry {
-            node: neuron.node.and_then(node),
-            name: neuron.name.clone(),
-            file: used.binary_search(&neuron.source).unwrap_or(0),
-            hidden: neuron.hidden,
-            selected: neuron.selected,
-            clamped: neuron.clamped,
-            place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+        let neuron = document.neurons.iter().enumerate().map(|(index, neuron)| {
+            let NeuronState {
+                hidden,
+                selected,
+                clamped,
+            } = document.neurons.state(index);
+            NeuronEntry {
+                node: neuron.node.and_then(node),
+                name: neuron.name.clone(),
+                file: used.binary_search(&neuron.source).unwrap_or(0),
+                hidden,
+                selected,
+                clamped,
+                place: (neuron.placement != Default::default()).then(|| neuron.placement.into()),
+            }
         });
         Self {
             version: VERSION,
@@ -248,47 +255,6 @@ impl Session {
         })
     }
 
-    /// The dimensions whose neurons could be opened. `opened`: by neuron of the session, its index
-    /// in the document.
-    pub(crate) fn dimensions(&self, opened: &[Option<usize>]) -> Vec<Dimension> {
-        let index = |neuron: usize| opened.get(neuron).copied().flatten();
-        let dimensions = self.dimension.iter();
-        dimensions.filter_map(|d| d.renumbered(index)).collect()
-    }
-
-    /// The traces whose neurons could be opened, as [`Self::dimensions`].
-    pub(crate) fn traces(&self, opened: &[Option<usize>]) -> Vec<Trace> {
-        let index = |neuron: usize| opened.get(neuron).copied().flatten();
-        let traces = self.trace.iter();
-        traces.filter_map(|t| t.renumbered(index)).collect()
-    }
-
-    /// The neuron of an entry, whose tracing is open as `source`.
-    pub(crate) fn neuron_of(&self, entry: &NeuronEntry, source: SourceId, state: &State) -> Neuron {
-        let node = self.node_of(entry, &state.circuits);
-        let traced = node.and_then(|of| {
-            let circuit = state.circuits.get(of.circuit)?;
-            let instances = circuit.instances(&[of.node], None);
-            let morphology = &state.sources.get(source)?.morphology;
-            Some(circuits::placement(instances.first()?, morphology))
-        });
-        Neuron {
-            node,
-            traced: traced.unwrap_or_default(),
-            ..entry.neuron(source)
-        }
-    }
-
-    /// The node of a neuron, if its circuit is open.
-    fn node_of(&self, entry: &NeuronEntry, open: &Circuits) -> Option<CircuitNode> {
-        let said = entry.node.as_ref()?;
-        let file = self.circuit.get(said.circuit)?.path.as_path();
-        let mut ids = open.iter().map(|(id, _)| id);
-        let circuit = ids.find(|&id| open.file(id) == Some(file))?;
-        let node = open.get(circuit)?.node(&said.population, said.id)?;
-        Some(CircuitNode { circuit, node })
-    }
-
     /// Writes the session to a file.
     ///
     /// # Errors
@@ -330,7 +296,7 @@ mod tests {
     use super::*;
     use crate::io::load;
     use crate::model::command::{Command, Edit};
-    use crate::model::document::{ColorBy, Cut, Lighting};
+    use crate::model::document::{ColorBy, Cut, Lighting, Neuron};
     use crate::model::settings::Settings;
     use crate::model::sources;
 

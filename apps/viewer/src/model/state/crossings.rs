@@ -62,12 +62,13 @@ impl State {
 
     fn placement_of_source(&self, source: SourceId) -> Option<Placement> {
         let placements = self.placements();
-        let neurons = self.document.neurons.iter().zip(placements.iter());
-        let mut shown = neurons.filter(|(n, _)| n.source == source && !n.hidden);
+        let neurons = &self.document.neurons;
+        let places = neurons.iter().zip(placements.iter()).enumerate();
+        let mut shown = places.filter(|(i, (n, _))| n.source == source && neurons.shows(*i));
         let first = shown.next()?;
         let selected = std::iter::once(first)
             .chain(shown)
-            .find(|(n, _)| n.selected);
-        Some(*selected.unwrap_or(first).1)
+            .find(|(i, _)| neurons.selected().contains(*i));
+        Some(*selected.unwrap_or(first).1.1)
     }
 }

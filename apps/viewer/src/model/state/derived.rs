@@ -137,22 +137,27 @@ impl State {
         }
     }
 
-    fn spheres_where(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+    fn spheres_where(&self, fits: impl Fn(usize) -> bool) -> Vec<BoundingSphere> {
         let factor = self.document.look.radius_factor();
         let placements = self.placements();
         let neurons = self.document.neurons.iter().zip(placements.iter());
-        neurons
-            .filter(|(n, _)| !n.hidden && fits(n))
-            .flat_map(|(n, placement)| self.spheres_of(n.source, *placement, factor))
+        let shown = neurons
+            .enumerate()
+            .filter(|(i, _)| self.document.neurons.shows(*i) && fits(*i));
+        shown
+            .flat_map(|(_, (n, placement))| self.spheres_of(n.source, *placement, factor))
             .collect()
     }
 
     /// Spheres (µm) at the tracing points of the neurons that are shown and fit `fits`: tighter
     /// than [`State::spheres`], to fit a camera to. With many neurons a few spheres each.
-    pub fn outline(&self, fits: impl Fn(&Neuron) -> bool) -> Vec<BoundingSphere> {
+    pub fn outline(&self, fits: impl Fn(usize) -> bool) -> Vec<BoundingSphere> {
         let placements = self.placements();
         let neurons = self.document.neurons.iter().zip(placements.iter());
-        let shown: Vec<_> = neurons.filter(|(n, _)| !n.hidden && fits(n)).collect();
+        let shown = neurons
+            .enumerate()
+            .filter(|(i, _)| self.document.neurons.shows(*i) && fits(*i));
+        let shown: Vec<_> = shown.map(|(_, shown)| shown).collect();
         if shown.len() >= MANY {
             return self.spheres_where(fits);
         }
@@ -193,9 +198,10 @@ impl State {
         let neurons = &self.document.neurons;
         let key = (neurons.revisions(), self.sources.geometry());
         self.derived.totals.get(key, || {
-            let any = !neurons.selected().is_empty();
-            let counted = neurons.iter().filter(|n| n.selected || !any);
-            Totals::of(counted.filter_map(|n| Some(&*self.sources.get(n.source)?.measures)))
+            let selected = neurons.selected();
+            let counted = neurons.iter().enumerate();
+            let counted = counted.filter(|(i, _)| selected.is_empty() || selected.contains(*i));
+            Totals::of(counted.filter_map(|(_, n)| Some(&*self.sources.get(n.source)?.measures)))
         })
     }
 

@@ -54,7 +54,7 @@ impl State {
         let neurons = &self.document.neurons;
         dimension
             .anchors()
-            .all(|anchor| neurons.get(anchor.neuron).is_some_and(|n| !n.hidden))
+            .all(|anchor| neurons.shows(anchor.neuron))
     }
 
     /// The file's number of the sample that the link of an anchor leads to; of a soma, of its first

@@ -379,7 +379,7 @@ impl State {
 
     /// Number of neurons that show.
     pub(crate) fn shown(&self) -> usize {
-        self.document.neurons.len() - self.document.neurons.hidden()
+        self.document.neurons.len() - self.document.neurons.hidden().len()
     }
 
     /// The source of a neuron.

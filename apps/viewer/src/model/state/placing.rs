@@ -41,7 +41,7 @@ impl State {
     /// Where the selected cells are, in numbers; none if there are none, or they cannot be moved.
     pub fn place_numbers(&self) -> Option<PlaceNumbers> {
         let position = self.middle_of_selected()?;
-        let &first = self.document.neurons.selected().first()?;
+        let first = self.document.neurons.selected().first()?;
         let rotation = self.document.neurons.get(first)?.placement.rotation;
         // One rotation has many angles: those that were typed stay.
         let typed = self.tools.typed_angles;
@@ -59,7 +59,7 @@ impl State {
         let turn = placing::rotation(numbers.rotation) * placing::rotation(now.rotation).inverse();
         let turns = numbers.rotation != now.rotation;
         let neurons = &self.document.neurons;
-        let places = neurons.selected().iter().map(|&neuron| {
+        let places = neurons.selected().iter().map(|neuron| {
             let before = neurons[neuron].placement;
             let mut place = match turns {
                 true => placing::turned(&before, now.position, turn),
@@ -79,13 +79,14 @@ impl State {
         if possible {
             self.tools.measuring = None;
         }
-        self.messages.status = match (on, self.document.grid, self.document.neurons.selected()) {
+        let any = !self.document.neurons.selected().is_empty();
+        self.messages.status = match (on, self.document.grid, any) {
             (false, ..) => "Cells stay where they are".into(),
             (true, true, _) => {
                 "Side by side, cells cannot be moved: G places them as traced".into()
             }
-            (true, false, []) => "Select the cells to move or turn".into(),
-            (true, false, _) => "Drag an arrow to move, a ring to turn".into(),
+            (true, false, false) => "Select the cells to move or turn".into(),
+            (true, false, true) => "Drag an arrow to move, a ring to turn".into(),
         };
     }
 
@@ -95,10 +96,7 @@ impl State {
             return;
         };
         let neurons = &self.document.neurons;
-        let before = neurons
-            .selected()
-            .iter()
-            .map(|&i| (i, neurons[i].placement));
+        let before = neurons.selected().iter().map(|i| (i, neurons[i].placement));
         let drag = Drag {
             handle,
             from,
@@ -119,7 +117,7 @@ impl State {
             self.messages.status = "Select the cells to copy".into();
             return;
         }
-        let (low, high) = extent(&self.outline(|n| n.selected));
+        let (low, high) = extent(&self.outline(|i| self.document.neurons.selected().contains(i)));
         let width = BESIDE * (high - low).x.max(0.0);
         self.run(Edit::Duplicate(DVec3::X * width));
         self.messages.status = match count {
@@ -135,7 +133,7 @@ impl State {
         let back: Vec<(usize, Placement)> = neurons
             .selected()
             .iter()
-            .map(|&i| (i, neurons[i].traced))
+            .map(|i| (i, neurons[i].traced))
             .filter(|&(i, traced)| neurons[i].placement != traced)
             .collect();
         self.messages.status = match back.len() {
@@ -227,13 +225,13 @@ mod tests {
         let mut state = state();
         state.run(Command::Duplicate);
         let neurons = &state.document.neurons;
-        assert_eq!((neurons.len(), neurons.selected()), (3, &[2][..]));
+        assert_eq!((neurons.len(), neurons.selected().only()), (3, Some(2)));
         assert_eq!(neurons[2].name, "two (copy)");
         assert!(neurons[2].placement.translation.x > 10.0);
         assert_eq!(neurons[2].source, neurons[1].source);
-        let all = state.outline(|n| n.name == "two");
+        let all = state.outline(|i| i == 1);
         let right = extent(&all).1.x;
-        let left = extent(&state.outline(|n| n.name == "two (copy)")).0.x;
+        let left = extent(&state.outline(|i| i == 2)).0.x;
         assert!(left > right, "they do not overlap: {left} {right}");
         state.run(Command::Undo);
         assert_eq!(state.document.neurons.len(), 2);

@@ -16,11 +16,11 @@ const MIN_STEP: f64 = 0.01;
 
 impl State {
     /// The tracings of the selected cells, each once; of the only cell, if none is selected.
-    pub(super) fn inspected_sources(&self) -> &[SourceId] {
+    pub(super) fn inspected_sources(&self) -> Vec<SourceId> {
         let neurons = &self.document.neurons;
-        match (neurons.selected(), neurons.len()) {
-            ([], 1) => neurons.sources(),
-            _ => neurons.selected_sources(),
+        match neurons.len() {
+            1 => neurons.meant_sources(),
+            _ => neurons.selected_sources().collect(),
         }
     }
 
@@ -36,7 +36,7 @@ impl State {
                 Measure::Sholl => form.step.max(MIN_STEP),
                 _ => 1.0,
             },
-            sources: sources.to_vec(),
+            sources,
             geometry: self.sources.geometry(),
         })
     }

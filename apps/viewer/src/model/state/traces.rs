@@ -116,7 +116,7 @@ impl State {
             section,
             along,
         } = trace.place;
-        if self.document.neurons.get(neuron)?.hidden {
+        if !self.document.neurons.shows(neuron) {
             return None;
         }
         let compartment = self.traces.of(trace.place);

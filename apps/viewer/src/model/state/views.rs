@@ -80,15 +80,15 @@ impl State {
     /// of its cell; a click on a neurite selects the whole cell.
     pub(super) fn focus(&mut self) {
         let soma = self.pointing.picked.filter(|picked| {
-            let only = self.document.neurons.selected() == [picked.neuron];
+            let only = self.document.neurons.selected().only() == Some(picked.neuron);
             only && picked.part == CellPart::Soma
         });
         if let Some(sphere) = soma.and_then(|soma| self.part_sphere(soma)) {
             self.run(Command::Go(self.view.focused(sphere)));
             return;
         }
-        let any = self.document.selected().next().is_some();
-        let spheres = self.outline(|n| n.selected || !any);
+        let selected = self.document.neurons.selected();
+        let spheres = self.outline(|i| selected.is_empty() || selected.contains(i));
         let (low, high) = extent(&spheres);
         if !spheres.is_empty() {
             let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);

@@ -49,7 +49,7 @@ impl Stage {
                 let patches = source.generated.mesh.patches.len() as u64;
                 (!instance.hidden).then_some(patches)
             };
-            let clamped = neurons.clamped().iter().copied();
+            let clamped = neurons.clamped().iter();
             let shown = clamped.filter_map(|index| Some((index, patches(index)?)));
             self.clamped = Clamped {
                 key,

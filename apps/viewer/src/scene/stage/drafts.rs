@@ -266,7 +266,7 @@ impl Stage {
 
     pub(super) fn set_states(&mut self, state: &State, key: StatesKey) {
         let mut states = content::states(&state.document);
-        for &neuron in state.document.neurons.selected() {
+        for neuron in state.document.neurons.selected().iter() {
             states[neuron] |= OUTLINED;
         }
         self.progressive.set_states(states);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Viewer;
 use crate::io::find::{Found, OpenRequest};
 use crate::model::command::{Command, Edit};
-use crate::model::document::{Neuron, SourceId};
+use crate::model::document::{Neuron, Neurons, SourceId};
 use crate::model::ids::{CircuitId, CircuitNode};
 use crate::model::session::{self, Session};
 use crate::model::sources::{Source, Stale};
@@ -188,16 +188,16 @@ impl Viewer {
             loading.session.is_some() || loading.found.cells.iter().any(|cell| cell.file == index);
         if !stands {
             let first = loading.first;
-            self.open(Neuron::new(id, name));
+            self.open(&Neurons::from_iter([Neuron::new(id, name)]));
             if first && self.state.document.neurons.len() == 1 {
                 self.home();
             }
         }
     }
 
-    fn open(&mut self, neuron: Neuron) {
-        self.state.history.opened(&neuron);
-        self.state.document.neurons.push(neuron);
+    fn open(&mut self, neurons: &Neurons) {
+        self.state.history.opened(neurons);
+        self.state.document.neurons.append(neurons);
     }
 
     fn home(&mut self) {
@@ -217,14 +217,8 @@ impl Viewer {
         };
         match &loading.session {
             Some(session) => {
-                let mut opened = Vec::new();
-                for entry in &session.neuron {
-                    let id = loading.ids.get(entry.file).copied().flatten();
-                    opened.push(id.map(|id| {
-                        self.open(session.neuron_of(entry, id, &self.state));
-                        self.state.document.neurons.len() - 1
-                    }));
-                }
+                let (neurons, opened) = session.neurons_of(&loading.ids, &self.state);
+                self.open(&neurons);
                 let dimensions = session.dimensions(&opened);
                 if !dimensions.is_empty() {
                     self.state.history.opened_dimensions(&dimensions);
@@ -238,6 +232,7 @@ impl Viewer {
                 }
             }
             None => {
+                let mut neurons = Neurons::default();
                 for cell in &loading.found.cells {
                     let id = loading.ids.get(cell.file).copied().flatten();
                     if let Some((id, source)) =
@@ -249,7 +244,7 @@ impl Viewer {
                             circuit,
                             node: cell.instance.node,
                         });
-                        self.open(Neuron {
+                        neurons.push(Neuron {
                             placement,
                             traced: placement,
                             node,
@@ -257,6 +252,7 @@ impl Viewer {
                         });
                     }
                 }
+                self.open(&neurons);
                 if loading.first {
                     self.home();
                 }

@@ -135,8 +135,8 @@ impl Viewer {
         if self.somata_checked == Some(key) {
             return;
         }
-        let mut used = document.neurons.sources().iter();
-        let due = used.find_map(|&id| {
+        let mut used = document.neurons.sources();
+        let due = used.find_map(|id| {
             let source = self.state.sources.get(id)?;
             let (soma, spines) = (document.soma(id), document.drawn_spines(id));
             let same_spines = source.spines == spines;

@@ -153,9 +153,13 @@ impl Viewer {
     fn mesh_plans(&self, all: bool) -> Vec<MeshPlan> {
         let state = &self.state;
         let placements = state.placements();
-        let neurons = state.document.neurons.iter().zip(placements.iter());
-        let inputs = neurons.filter(|(n, _)| if all { !n.hidden } else { n.selected });
-        let plan = |(neuron, &placement): (&Neuron, &_)| {
+        let neurons = &state.document.neurons;
+        let inputs = neurons.iter().zip(placements.iter()).enumerate();
+        let inputs = inputs.filter(|(i, _)| match all {
+            true => neurons.shows(*i),
+            false => neurons.selected().contains(*i),
+        });
+        let plan = |(_, (neuron, &placement)): (usize, (&Neuron, &_))| {
             let source = state.sources.get(neuron.source)?;
             Some(MeshPlan {
                 name: neuron.name.clone(),

@@ -7,6 +7,7 @@ use eframe::egui::{
 use neurotess::morphology::{Attachment, Morphology, SectionId};
 
 use crate::model::command::{Command, Edit};
+use crate::model::document::NeuronState;
 use crate::model::sources::{SectionFacts, Stale};
 use crate::model::state::{CellPart, Picked, State};
 use crate::ui::panels::measured;
@@ -15,7 +16,7 @@ use crate::ui::panels::widgets::tip::Tip;
 pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     ui.add_space(4.0);
     let neurons = state.document.neurons.len();
-    let hidden = state.document.neurons.hidden();
+    let hidden = state.document.neurons.hidden().len();
     let rows = state.found();
     ui.horizontal(|ui| {
         let title = match state.layout.search.is_empty() {
@@ -64,7 +65,7 @@ pub(super) fn show(state: &mut State, ui: &mut egui::Ui) {
     }
     // Hidden neurons are not in the picture, so that they cannot be outlined.
     let neurons = &state.document.neurons;
-    let shows = |p: &Picked| neurons.get(p.neuron).is_some_and(|n| !n.hidden);
+    let shows = |p: &Picked| neurons.shows(p.neuron);
     if hovered.as_ref().is_some_and(shows) {
         state.pointing.hovered = hovered;
     }
@@ -107,9 +108,12 @@ fn list(
 }
 
 fn row(state: &mut State, index: usize, hovered: &mut Option<Picked>, ui: &mut egui::Ui) {
-    let neuron = &state.document.neurons[index];
-    let (name, hidden, selected) = (neuron.name.clone(), neuron.hidden, neuron.selected);
-    let clamped = neuron.clamped;
+    let name = state.document.neurons[index].name.clone();
+    let NeuronState {
+        hidden,
+        selected,
+        clamped,
+    } = state.document.neurons.state(index);
     let stale = state.source_of(index).and_then(|s| s.stale);
     let warnings = state.source_of(index).map_or(0, |s| {
         let concerns = s.warnings.iter().filter(|w| w.concerns);

@@ -270,7 +270,7 @@ fn a_rectangle_selects_the_cells_whose_somata_are_inside() {
     assert_eq!(select(somata[0] + around, somata[0] - around, true), [0, 1]);
     assert_eq!(select(somata[2] - around, somata[2] + around, false), [2]);
     run(&mut window, Edit::Isolate);
-    let hidden = state(&mut window).document.neurons.iter().map(|n| n.hidden);
+    let hidden = (0..3).map(|i| !state(&mut window).document.neurons.shows(i));
     assert!(hidden.eq([true, true, false]));
 }
 

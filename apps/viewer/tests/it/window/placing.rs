@@ -84,7 +84,10 @@ fn a_lasso_goes_around_what_lies_between() {
         c + corner(-15.0, 15.0),
     ];
     drag(&mut window, &column, Modifiers::COMMAND);
-    assert_eq!(state(&mut window).document.neurons.selected(), [0, 2]);
+    assert_eq!(
+        state(&mut window).document.neurons.selected().to_vec(),
+        [0, 2]
+    );
     let diagonal = [
         b + corner(-15.0, -15.0),
         b + corner(15.0, -15.0),
@@ -97,7 +100,7 @@ fn a_lasso_goes_around_what_lies_between() {
     for each in [true, false] {
         state(&mut window).run(Edit::SelectNone);
         drag_in(&mut window, &column, Modifiers::COMMAND, each);
-        let selected = state(&mut window).document.neurons.selected();
+        let selected = state(&mut window).document.neurons.selected().to_vec();
         assert_eq!(selected, [0, 2], "a frame for each event: {each}");
     }
     drag(&mut window, &diagonal, Modifiers::COMMAND);
@@ -277,5 +280,5 @@ fn a_presentation_turns_the_scene_without_panels_until_escape() {
     assert!(!state(&mut window).layout.presenting);
     assert_eq!(crate::common::picture(&window), small);
     // Escape has ended the presentation, and not the selection.
-    assert_eq!(state(&mut window).document.neurons.selected(), [0]);
+    assert_eq!(state(&mut window).document.neurons.selected().to_vec(), [0]);
 }

@@ -93,9 +93,9 @@ fn several_neurons_are_laid_out_selected_and_hidden() {
     window.key_press(Key::H);
     window.step();
     settle(&mut window);
-    assert!(state(&mut window).document.neurons[1].hidden);
+    assert!(!state(&mut window).document.neurons.shows(1));
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.step();
     settle(&mut window);
-    assert!(!state(&mut window).document.neurons[1].hidden);
+    assert!(state(&mut window).document.neurons.shows(1));
 }

@@ -82,7 +82,7 @@ fn each_view_moves_by_itself_and_linked_ones_together() {
     let [x, y] = after[1].camera().pixel_of(soma, size).expect("in front");
     let at = right.min + Vec2::new(x as f32, y as f32);
     crate::common::click(&mut window, at, Modifiers::NONE);
-    assert_eq!(state(&mut window).document.neurons.selected(), [0]);
+    assert_eq!(state(&mut window).document.neurons.selected().to_vec(), [0]);
     run(&mut window, Edit::SelectNone);
     // Linked, the angle between them stays.
     run(&mut window, Command::SetLinked(true));

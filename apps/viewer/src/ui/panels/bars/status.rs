@@ -28,7 +28,7 @@ pub(crate) fn show(
             }
         }
         problems(state, ui);
-        let hidden = state.document.neurons.hidden();
+        let hidden = state.document.neurons.hidden().len();
         if hidden > 0 {
             let link = ui.link(format!("{hidden} hidden"));
             if link.on_hover_text("Show all").clicked() {

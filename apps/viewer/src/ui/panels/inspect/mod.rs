@@ -19,15 +19,16 @@ use crate::ui::panels::{figures, grouped, heading, measured};
 pub(crate) fn show(state: &mut State, ui: &mut egui::Ui) {
     dimension_list::show(state, ui);
     markers::picked(state, ui);
-    match *state.document.neurons.selected() {
-        [] => {
+    let selected = state.document.neurons.selected();
+    match (selected.len(), selected.only()) {
+        (0, _) => {
             ui.weak(
                 "Nothing is selected. Click a neuron in the picture or in the list; Shift + click selects several.",
             );
             ui.add_space(6.0);
             all(state, ui);
         }
-        [one] => {
+        (_, Some(one)) => {
             let name = state.document.neurons[one].name.clone();
             ui.label(RichText::new(name).size(16.0).strong());
             if let Some(source) = state.source_of(one) {
@@ -42,8 +43,7 @@ pub(crate) fn show(state: &mut State, ui: &mut egui::Ui) {
                 cell(source, ui);
             }
         }
-        [..] => {
-            let many = state.document.neurons.selected().len();
+        (many, None) => {
             ui.label(RichText::new(count(many, "neuron")).size(16.0).strong());
             buttons(state, ui);
             place::show(state, ui);

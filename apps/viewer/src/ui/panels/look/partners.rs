@@ -26,8 +26,7 @@ pub(crate) fn show(state: &State, rect: Rect, painter: &Painter) {
     let [r, g, b] = state.document.look.background;
     let rim = Color32::from_rgba_unmultiplied(r, g, b, 200);
     for path in state.partner_paths().iter() {
-        let neuron = state.document.neurons.get(path.neuron);
-        if neuron.is_none_or(|neuron| neuron.hidden) {
+        if !state.document.neurons.shows(path.neuron) {
             continue;
         }
         let corners = path.corners.iter();

@@ -130,8 +130,8 @@ fn is_inside(outline: &[Pos2], at: Pos2) -> bool {
 fn neurons(state: &State, area: &Area, picture: Rect) -> Vec<usize> {
     let camera = state.view.camera();
     let shown = |&index: &usize| {
-        let hidden = state.document.neurons[index].hidden;
-        let place = state.middle_of(index).filter(|_| !hidden);
+        let shows = state.document.neurons.shows(index);
+        let place = state.middle_of(index).filter(|_| shows);
         let seen = place.and_then(|place| marks::at(&camera, picture, place));
         seen.is_some_and(|at| area.contains(at))
     };

@@ -24,8 +24,8 @@ pub(crate) fn show(state: &State, rect: Rect, painter: &Painter) {
     let axes = camera.axes();
     let shown = neurons.iter().zip(placements.iter()).enumerate();
     let selected = neurons.selected();
-    let is_meant = |neuron: &usize| selected.is_empty() || selected.contains(neuron);
-    let shown = shown.filter(|(index, (neuron, _))| is_meant(index) && !neuron.hidden);
+    let is_meant = |neuron: usize| selected.is_empty() || selected.contains(neuron);
+    let shown = shown.filter(|(index, _)| is_meant(*index) && neurons.shows(*index));
     for (_, (neuron, placement)) in shown.take(MAX_NEURONS) {
         let Some(source) = state.sources.get(neuron.source) else {
             continue;

@@ -321,12 +321,8 @@ fn click(
                 state.requests.push(Edit::Plot(place, adds).into());
                 return;
             }
-            let already = state
-                .document
-                .neurons
-                .get(picked.neuron)
-                .is_some_and(|n| n.selected);
-            let only = state.document.neurons.selected().len() == 1;
+            let selected = state.document.neurons.selected();
+            let (already, only) = (selected.contains(picked.neuron), selected.len() == 1);
             // A click on another part of the selected neuron does not change the selection.
             if adds || !already || !only {
                 state

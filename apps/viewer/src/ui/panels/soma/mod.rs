@@ -15,10 +15,7 @@ use crate::ui::panels::{figures, heading, measured};
 
 pub(crate) fn show(state: &mut State, ui: &mut Ui) {
     let neurons = &state.document.neurons;
-    let sources = match neurons.selected_sources() {
-        [] => neurons.sources(),
-        selected => selected,
-    };
+    let sources = neurons.meant_sources();
     if neurons.selected().is_empty() && neurons.len() > 1 {
         ui.weak("No neuron is selected: changes apply to all somata.");
     } else if sources.len() > 1 {
@@ -89,11 +86,7 @@ pub(crate) fn show(state: &mut State, ui: &mut Ui) {
         edit = usual;
     }
     if edit != before {
-        let sources = match state.document.neurons.selected_sources() {
-            [] => state.document.neurons.sources(),
-            selected => selected,
-        };
-        let command = Edit::SetSoma(sources.to_vec(), edit.clone()).into();
+        let command = Edit::SetSoma(sources.clone(), edit.clone()).into();
         state.requests.push(command);
     } else if dropped {
         state.history.end_joining();
@@ -107,11 +100,6 @@ pub(crate) fn show(state: &mut State, ui: &mut Ui) {
             }
         }
     }
-    let sources = match state.document.neurons.selected_sources() {
-        [] => state.document.neurons.sources(),
-        selected => selected,
-    }
-    .to_vec();
     spines::show(state, &sources, ui);
     measures(state, first, &edit, ui);
 }

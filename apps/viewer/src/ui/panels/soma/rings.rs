@@ -138,9 +138,13 @@ fn touch(state: &mut State, id: SourceId, neurite: u32) {
     state.pointing.touched = Some((id, neurite));
     let neurons = &state.document.neurons;
     let shows = |selected: bool| {
-        neurons
+        let mut shown = neurons
             .iter()
-            .position(|n| n.source == id && !n.hidden && (n.selected || !selected))
+            .enumerate()
+            .filter(|(i, _)| neurons.shows(*i));
+        let found =
+            shown.find(|(i, n)| n.source == id && (!selected || neurons.selected().contains(*i)));
+        found.map(|(index, _)| index)
     };
     state.pointing.hovered = shows(true).or_else(|| shows(false)).map(|neuron| Picked {
         neuron,

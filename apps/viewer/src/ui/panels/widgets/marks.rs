@@ -70,8 +70,8 @@ pub(crate) fn rings(state: &State, rect: Rect, painter: &Painter) {
         return;
     };
     let (placements, neurons) = (state.placements(), &state.document.neurons);
-    for (neuron, placement) in neurons.iter().zip(placements.iter()) {
-        if neuron.source != id || neuron.hidden {
+    for (index, (neuron, placement)) in neurons.iter().zip(placements.iter()).enumerate() {
+        if neuron.source != id || !neurons.shows(index) {
             continue;
         }
         let projection = Projection {
@@ -119,11 +119,7 @@ pub(crate) fn hovered(state: &State, rect: Rect, painter: &Painter) {
     let Some(Picked { neuron, part }) = state.pointing.hovered else {
         return;
     };
-    let shows = state
-        .document
-        .neurons
-        .get(neuron)
-        .is_some_and(|n| !n.hidden);
+    let shows = state.document.neurons.shows(neuron);
     let (Some(source), Some(placement), true) = (
         state.source_of(neuron),
         state.placements().get(neuron).copied(),
