@@ -10,7 +10,7 @@ use crate::model::index_set::IndexSet;
 use crate::model::revision::Revision;
 use crate::model::shared_list::SharedList;
 
-/// Neurons in the order of the list. They are read as a [`SharedList`], and changed by methods that keep
+/// Neurons in the order of the list. They are read as a `SharedList`, and changed by methods that keep
 /// revisions and counts up to date.
 ///
 /// The history has a copy for each edit. Copies share what is equal, so that one of 100,000 neurons takes a few kB.
