@@ -40,7 +40,7 @@ pub use options::{DrawOptions, OwnData};
 #[cfg(feature = "pages")]
 pub use page::{MadePage, PageContent, PageError, PageValues, page};
 pub use painter::{
-    BudgetStats, Cost, Device, Open, PROCESSOR, SourceStats, StreamStats, Take, Wanted, open,
+    BudgetStats, Cost, Device, Open, Recolored, SourceStats, StreamStats, Take, Wanted, open,
     wanted,
 };
 pub use pick::Picked;

@@ -5,7 +5,7 @@ use neurotess::picture::{Image, KeyColors};
 
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
-use crate::scene::painter::Recolored;
+use neurotess::drawing::Recolored;
 use crate::scene::still_scene::StillScene;
 
 /// Whether the pictures of a film differ in the values of a recording only.
@@ -41,5 +41,6 @@ pub(super) fn picture(
         states: &scene.states,
         values: Some(&values),
     };
-    picture.image(&colors).map(Some)
+    let image = picture.image(&colors);
+    image.map(Some).map_err(|e| e.to_string())
 }

@@ -110,25 +110,10 @@ def edit(
             places, synapses = "synapses", _places(places)
         spines = [os.fspath(places) if isinstance(places, os.PathLike) else places, *seed]
     keywords = {
-        "types": types,
-        "scale": scale,
-        "units": units,
-        "mend_radii": mend_radii,
-        "reroot": reroot,
-        "join": join,
-        "subtree": subtree,
-        "cut": cut,
-        "drop_types": drop_types,
-        "within": within,
-        "prune": prune,
-        "smooth": smooth,
-        "resample": resample,
-        "simplify": simplify,
+        **{name: value for name, value in given.items() if name not in ("cell", "translate")},
         "spines": spines,
-        "recenter": recenter,
         # In their order: turns do not commute.
         "rotate": [*rotate.items()] if isinstance(rotate, Mapping) else rotate,
-        "mirror": mirror,
         "matrix": None if matrix is None and translate is None else _rows(matrix, translate),
     }
     try:

@@ -107,34 +107,9 @@ def mesh(
     >>> mesh.closed, mesh.vertices.dtype, mesh.faces.shape[1]
     (True, dtype('float64'), 3)
     """
-    options: dict[str, Any] = {
-        "level": level,
-        "max_error": max_error,
-        "level_along": level_along,
-        "isotropic": isotropic,
-        "max_edge": max_edge,
-        "min_edge": min_edge,
-        "max_aspect": max_aspect,
-        "path": path,
-        "caps": caps,
-        "crossings": crossings,
-        "simulation": simulation,
-        "soma": soma,
-        "poisson": poisson,
-        "soma_keep": soma_keep,
-        "soma_mesh": soma_mesh,
-        "soma_scale": soma_scale,
-        "radii": radii,
-        "radius_factor": radius_factor,
-        "radius": radius,
-        "min_radius": min_radius,
-        "soma_sphere": soma_sphere,
-        "soma_level": soma_level,
-        "ring": ring,
-        "smooth": smooth,
-        "types": types,
-        "quads": quads,
-    }
+    options: dict[str, Any] = dict(locals())
+    for name in ("cell", "threads"):
+        del options[name]
     recipe = _options.recipe(options)
     return _mesh(recipe, cell_of(cell), threads)
 

@@ -106,39 +106,9 @@ def html(
     >>> nt.html(nt.synth("granule", points=100), color_by="radius")[:15]
     '<!doctype html>'
     """
-    options: dict[str, Any] = {
-        "color_by": color_by,
-        "values": values,
-        "times": times,
-        "values_title": values_title,
-        "unit": unit,
-        "report": report,
-        "time": time,
-        "range": range,
-        "palette": palette,
-        "colormap": colormap,
-        "background": background,
-        "title": title,
-        "least_width": least_width,
-        "radius_factor": radius_factor,
-        "radius": radius,
-        "min_radius": min_radius,
-        "synapses": synapses,
-        "synapse_side": synapse_side,
-        "points": points,
-        "marker_color_by": marker_color_by,
-        "marker_size": marker_size,
-        "markers": markers,
-        "soma": soma,
-        "ring": ring,
-        "types": types,
-        "nodes": nodes,
-        "node_set": node_set,
-        "population": population,
-        "region": region,
-        "sample": sample,
-        "sample_seed": sample_seed,
-    }
+    options: dict[str, Any] = dict(locals())
+    for name in ("what", "path", "force"):
+        del options[name]
     options = ungrouped(options)
     if options.get("marker_shape") is not None:
         raise OptionError("markers of pages are spheres: leave out 'shape' of markers=", "markers", "no 'shape' is needed")

@@ -10,6 +10,7 @@ from ._errors import NeurotessWarning, OptionError
 from ._groups import ungrouped
 from ._scene import DrawnCircuit, check_names, drawing_of
 from ._units import times_of
+from ._words import spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -195,67 +196,8 @@ def render(
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
-    options: dict[str, Any] = {
-        "size": size,
-        "camera": camera,
-        "scene": scene,
-        "markers": markers,
-        "color_by": color_by,
-        "color_by_attribute": color_by_attribute,
-        "values": values,
-        "times": times,
-        "title": title,
-        "unit": unit,
-        "report": report,
-        "time": time,
-        "range": range,
-        "palette": palette,
-        "colormap": colormap,
-        "trim_colormap": trim_colormap,
-        "legend": legend,
-        "scale_bar": scale_bar,
-        "axes": axes,
-        "background": background,
-        "transparent": transparent,
-        "samples": samples,
-        "view": view,
-        "eye": eye,
-        "target": target,
-        "up": up,
-        "fov": fov,
-        "orthographic": orthographic,
-        "wireframe": wireframe,
-        "least_width": least_width,
-        "radius_factor": radius_factor,
-        "radius": radius,
-        "min_radius": min_radius,
-        "synapses": synapses,
-        "synapse_side": synapse_side,
-        "points": points,
-        "marker_color_by": marker_color_by,
-        "marker_shape": marker_shape,
-        "marker_size": marker_size,
-        "meshes": meshes,
-        "light": light,
-        "ao": ao,
-        "lod": lod,
-        "level": level,
-        "pixels": pixels,
-        "budget": budget,
-        "soma": soma,
-        "ring": ring,
-        "types": types,
-        "nodes": nodes,
-        "node_set": node_set,
-        "population": population,
-        "region": region,
-        "sample": sample,
-        "sample_seed": sample_seed,
-        "cache": cache,
-        "gpu_memory": gpu_memory,
-        "adapter": adapter,
-        "like": like,
-    }
+    options: dict[str, Any] = dict(locals())
+    del options["what"]
     options = ungrouped(options)
     _check_pairs(options)
     return next(_pictures(what, options))
@@ -325,7 +267,7 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
         options["time"] = times_of("time=", options["time"])
     drawing = drawing_of(what, options, options.pop("adapter", None), given, times)
     for message in drawing.messages:
-        warnings.warn(NeurotessWarning(message), stacklevel=3)
+        warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
     try:
         for number in range(drawing.pictures):
             yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipe)

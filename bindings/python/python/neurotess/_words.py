@@ -67,5 +67,13 @@ def named(option: str, needed: str) -> tuple[str, str]:
     return option, NEEDED.get(option, needed)
 
 
+def spoken(message: str) -> str:
+    """What there is to say about a picture, with options as keywords: ``size=`` for ``--size``."""
+    import re
+
+    message = message.replace("--no-legend", "legend=False")
+    return re.sub(r"--([a-z][a-z-]*)", lambda flag: _named(flag[1].replace("-", "_")) + "=", message)
+
+
 def _named(option: str) -> str:
     return NAMES.get(option, option)

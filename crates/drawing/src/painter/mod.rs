@@ -60,7 +60,7 @@ pub fn open(name: Option<&str>) -> Result<Arc<Device>, String> {
 }
 
 /// The name by which the processor is asked for.
-pub const PROCESSOR: &str = "cpu";
+pub(crate) const PROCESSOR: &str = "cpu";
 /// The variable that names what draws, where no option does.
 const VARIABLE: &str = "NEUROTESS_ADAPTER";
 /// Coarse patches of all pictures together from which on a hardware adapter is looked for: a core of the processor takes
@@ -83,8 +83,10 @@ enum Kind {
 }
 
 /// A picture that is colored anew.
-pub(crate) enum Recolored {
+pub enum Recolored {
+    /// Drawn by the processor.
     Processor(raster::StaticPicture),
+    /// Drawn by an adapter.
     #[cfg(feature = "gpu")]
     Adapter(Arc<Device>, neurotess_render::StaticPicture),
 }
@@ -282,7 +284,7 @@ impl Painter {
 
 impl Recolored {
     /// What shows.
-    pub(crate) fn keys(&self) -> &[VisibleKey] {
+    pub fn keys(&self) -> &[VisibleKey] {
         match self {
             Self::Processor(picture) => picture.keys(),
             #[cfg(feature = "gpu")]
@@ -291,7 +293,7 @@ impl Recolored {
     }
 
     /// Number of weights, and their bytes.
-    pub(crate) fn size(&self) -> (usize, u64) {
+    pub fn size(&self) -> (usize, u64) {
         match self {
             Self::Processor(picture) => (picture.weights(), picture.bytes()),
             #[cfg(feature = "gpu")]
@@ -300,7 +302,10 @@ impl Recolored {
     }
 
     /// The picture in these colors.
-    pub(crate) fn image(&self, colors: &KeyColors<'_>) -> Result<Image, DrawError> {
+    ///
+    /// # Errors
+    /// The adapter fails.
+    pub fn image(&self, colors: &KeyColors<'_>) -> Result<Image, DrawError> {
         match self {
             Self::Processor(picture) => Ok(picture.image(colors)),
             #[cfg(feature = "gpu")]

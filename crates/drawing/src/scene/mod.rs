@@ -80,11 +80,6 @@ impl Scene {
             cache: None,
         }
     }
-
-    /// The cells that did not fail.
-    pub fn cells(&self) -> Vec<&MeshedCell> {
-        self.entries.iter().flatten().collect()
-    }
 }
 
 /// Refuses options of circuits, of which there is none.

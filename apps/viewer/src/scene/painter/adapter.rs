@@ -8,7 +8,8 @@ use neurotess::render::{
     Adaptive, Combined, Gpu, Markers, Meshes, PictureError, StaticError, StillRenderer, tiles,
 };
 
-use super::{Recolored, Take, Unmade, refined};
+use super::{Take, Unmade, refined};
+use neurotess::drawing::Recolored;
 use crate::scene::content;
 use crate::scene::meshes;
 use crate::scene::still_scene::StillScene;

@@ -6,15 +6,12 @@ mod adapter;
 mod processor;
 
 use std::io;
-use std::sync::Arc;
 
 use neurotess::picture::color::ColorTable;
-use neurotess::picture::{
-    AdaptiveSettings, Image, KeyColors, PictureOptions, Viewpoint, VisibleKey, Watch,
-};
+use neurotess::picture::{AdaptiveSettings, Image, PictureOptions, Viewpoint, Watch};
+use neurotess::drawing::Recolored;
 use neurotess::raster;
 use neurotess::refine::LodCriterion;
-use neurotess::render::{self, Gpu};
 
 use adapter::Adapter;
 use processor::Processor;
@@ -27,12 +24,6 @@ pub(super) use processor::{Beside, of_view};
 pub(super) enum Painter<'a> {
     Processor(Processor<'a>),
     Adapter(Box<Adapter>),
-}
-
-/// A picture that is colored anew.
-pub(super) enum Recolored {
-    Processor(raster::StaticPicture),
-    Adapter(Arc<Gpu>, render::StaticPicture),
 }
 
 /// Why a picture is not there.
@@ -93,31 +84,6 @@ impl<'a> Painter<'a> {
         match self {
             Self::Processor(processor) => processor.draw_static(view, table, options),
             Self::Adapter(adapter) => adapter.draw_static(view, table, options),
-        }
-    }
-}
-
-impl Recolored {
-    /// What shows.
-    pub(super) fn keys(&self) -> &[VisibleKey] {
-        match self {
-            Self::Processor(picture) => picture.keys(),
-            Self::Adapter(_, picture) => picture.keys(),
-        }
-    }
-
-    /// The picture in these colors.
-    ///
-    /// # Errors
-    /// A message: the adapter reports an error.
-    pub(super) fn image(&self, colors: &KeyColors<'_>) -> Result<Image, String> {
-        match self {
-            Self::Processor(picture) => Ok(picture.image(colors)),
-            Self::Adapter(gpu, picture) => {
-                let recolored = picture.recolor(gpu, colors);
-                let image = recolored.and_then(|()| picture.image(gpu));
-                image.map_err(|e| e.to_string())
-            }
         }
     }
 }

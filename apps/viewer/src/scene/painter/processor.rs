@@ -8,7 +8,8 @@ use neurotess::picture::{
 };
 use neurotess::raster::{self, PictureError};
 
-use super::{Recolored, Take, Unmade};
+use super::{Take, Unmade};
+use neurotess::drawing::Recolored;
 use crate::scene::content;
 use crate::scene::meshes::SceneMesh;
 use crate::scene::still_scene::StillScene;
