@@ -12,6 +12,7 @@ from ._packages import needed
 from ._pictures import Image, render
 from ._scene import DrawnCircuit, check_names, drawing_of
 from ._series import Times
+from ._words import spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -198,7 +199,7 @@ class KernelView(LiveView, RemoteFrameBuffer):  # type: ignore[misc]
         full = drawing_of(self._what, {**options, "lod": "static"}, self._adapter, given)
         made = (self._quick(options, given), full)
         for message in full.messages:
-            warnings.warn(NeurotessWarning(message), stacklevel=3)
+            warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
         first = self._drawings is None
         self._drop()
         self._drawings = made

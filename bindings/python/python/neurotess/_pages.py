@@ -12,6 +12,7 @@ from ._scene import SELECTION, DrawnCircuit, _cells, _chosen, _with_colors
 from ._sources import is_alone
 from ._units import times_of
 from ._values import values_of
+from ._words import spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -160,7 +161,7 @@ def page_of(what: Any, options: Mapping[str, Any], force: bool) -> _neurotess.Pa
 
         raise with_given(error, {**given, **options}) from None
     for message in page.messages:
-        warnings.warn(NeurotessWarning(message), stacklevel=3)
+        warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
     return page
 
 

@@ -71,7 +71,7 @@ def spoken(message: str) -> str:
     """What there is to say about a picture, with options as keywords: ``size=`` for ``--size``."""
     import re
 
-    message = message.replace("--no-legend", "legend=False")
+    message = message.replace("--no-legend", "legend=False").replace("--palette okabe-ito", "palette='okabe-ito'")
     return re.sub(r"--([a-z][a-z-]*)", lambda flag: _named(flag[1].replace("-", "_")) + "=", message)
 
 
