@@ -61,6 +61,19 @@ pub(crate) fn draw_option(py: Python<'_>, error: &neurotess::options::OptionErro
     }
 }
 
+/// A warning of ours.
+///
+/// # Errors
+/// It is one that the user wants to be an error.
+#[cfg(feature = "render")]
+pub(crate) fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
+    let category = py
+        .import("neurotess._errors")?
+        .getattr("NeurotessWarning")?;
+    let message = std::ffi::CString::new(message).map_err(bug)?;
+    PyErr::warn(py, &category, &message, 2)
+}
+
 /// A file that cannot be written.
 pub(crate) fn output(error: &OutputError) -> PyErr {
     match error {

@@ -10,7 +10,7 @@ use neurotess::options::set_option;
 use neurotess::recipe::{MeshOptions, NamedOptions, OptionValue, OptionsError, Spelling};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyMapping, PyString};
+use pyo3::types::{PyDict, PyMapping, PyString};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -42,11 +42,17 @@ pub(crate) fn mesh_options(keywords: &Bound<'_, PyDict>) -> PyResult<MeshOptions
 pub(crate) fn draw_options(keywords: &Bound<'_, PyDict>) -> PyResult<DrawOptions> {
     let py = keywords.py();
     let mut options = DrawOptions::default();
+    let mut base = None;
     if let Some(like) = keywords.get_item("like")?.filter(|like| !like.is_none()) {
         let file: std::path::PathBuf = like.extract()?;
-        let picture = picture_of_png(&file);
-        options.picture = picture.map_err(|e| errors::render(py, &e.to_string()))?;
+        let recipe = picture_of_png(&file);
+        let recipe = recipe.map_err(|e| errors::render(py, &e.to_string()))?;
+        if let Some(warning) = recipe.warning(&file) {
+            errors::warn(py, &warning)?;
+        }
+        base = Some(recipe.picture);
     }
+    let mut given = Vec::new();
     for (keyword, value) in keywords {
         let Some(value) = option_value(&value)?.filter(|v| *v != OptionValue::Switch(false)) else {
             continue;
@@ -57,6 +63,10 @@ pub(crate) fn draw_options(keywords: &Bound<'_, PyDict>) -> PyResult<DrawOptions
         }
         let value = json_of(&value);
         set(&mut options, &keyword, &value).map_err(|e| errors::draw_option(py, &e))?;
+        given.push(keyword);
+    }
+    if let Some(base) = base {
+        options.picture = base.with(&options.picture, &given);
     }
     Ok(options)
 }
@@ -119,8 +129,9 @@ fn option_value(value: &Bound<'_, PyAny>) -> PyResult<Option<OptionValue>> {
     if value.is_none() {
         return Ok(None);
     }
-    if let Ok(switch) = value.cast::<PyBool>() {
-        return Ok(Some(OptionValue::Switch(switch.is_true())));
+    // Those of NumPy, too.
+    if let Ok(switch) = value.extract::<bool>() {
+        return Ok(Some(OptionValue::Switch(switch)));
     }
     if let Ok(text) = value.cast::<PyString>() {
         return Ok(Some(OptionValue::Text(text.extract()?)));

@@ -94,9 +94,9 @@ pub(crate) struct Drawing {
     /// How many pictures the options ask for.
     #[pyo3(get)]
     pictures: usize,
-    /// How they are made, as PNG files tell it.
+    /// How each is made, as PNG files tell it.
     #[pyo3(get)]
-    recipe: String,
+    recipes: Vec<String>,
     /// Whether nothing is behind the cells.
     #[pyo3(get)]
     transparent: bool,
@@ -271,7 +271,7 @@ impl Drawing {
         let (drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
         Ok(Self {
             pictures: drawing.pictures(),
-            recipe: drawing.recipe(),
+            recipes: (0..drawing.pictures()).map(|n| drawing.recipe(n)).collect(),
             transparent: drawing.options().picture.look.transparent,
             by_adapter: drawing.by_adapter(),
             shared: Arc::new(Mutex::new(Some(drawing))),

@@ -52,5 +52,9 @@ pub fn draw(cells: &[&CellMesh], picture: &Picture) -> Result<DrawnImage, DrawEr
     let own = OwnData::default();
     let mut drawing = Drawing::of_scene(scene, picture.clone().into(), own, &open, &host)?;
     let image = drawing.draw(0, &Arc::default())?;
-    Ok(DrawnImage { image, picture })
+    Ok(DrawnImage {
+        image,
+        recipe: drawing.recipe(0),
+        picture,
+    })
 }

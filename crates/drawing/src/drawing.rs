@@ -8,7 +8,8 @@ use std::time::Instant;
 use neurotess_circuit::NodeRef;
 use neurotess_color::{ClosestColors, MarkerSet};
 use neurotess_morphology::Morphology;
-use neurotess_options::words::Size;
+use neurotess_options::groups::CellSelection;
+use neurotess_options::words::{Point, Size, Time, ViewSide};
 use neurotess_picture::overlay::Overlay;
 use neurotess_picture::{
     BoundingSphere, Camera, Image, PictureOptions, Placement, Viewpoint, Watch,
@@ -56,6 +57,10 @@ pub struct Drawing {
     /// Of a series of times from a fixed camera: drawn with the first of its pictures.
     film: Option<FixedFilm>,
     seconds: DrawingSeconds,
+    /// Which of the meshes beside the cells were in memory.
+    in_memory: Vec<bool>,
+    /// What is drawn that no file can tell.
+    left_out: Vec<&'static str>,
 }
 
 /// How long it took until the first picture could be drawn (s).
@@ -131,6 +136,14 @@ impl Drawing {
             surfaces,
             mesh_values,
         } = own;
+        let in_memory: Vec<bool> = surfaces.iter().map(Option::is_some).collect();
+        let left_out = [
+            ("values", numbers.is_some() || mesh_values.is_some()),
+            ("colormap", asked.scale.is_some()),
+            ("meshes", in_memory.contains(&true)),
+        ];
+        let left_out = left_out.into_iter().filter(|(_, is)| *is);
+        let left_out = left_out.map(|(what, _)| what).collect();
         let still = matches!(numbers, Some(neurotess_color::OwnNumbers::Still(_)));
         let meshes = SceneMeshes::read(&picture.meshes.mesh, surfaces, host)?;
         let shown_by = (instances.as_ref(), &of_cells[..]);
@@ -177,6 +190,8 @@ impl Drawing {
             painter,
             film: None,
             seconds,
+            in_memory,
+            left_out,
         })
     }
 
@@ -201,9 +216,31 @@ impl Drawing {
         &self.asked
     }
 
-    /// How the pictures are made, as PNG files tell it under [`PNG_KEYWORD`](crate::PNG_KEYWORD).
-    pub fn recipe(&self) -> String {
-        recipe_of(&self.asked.picture)
+    /// How one of the pictures is made, as PNG files tell it under [`PNG_KEYWORD`](crate::PNG_KEYWORD): from its own camera,
+    /// at its own time.
+    pub fn recipe(&self, picture: usize) -> String {
+        let mut single = self.asked.picture.clone();
+        // Which cells are shown is not a part of it, nor what is in memory.
+        single.cells = CellSelection::default();
+        let mut in_memory = self.in_memory.iter();
+        single
+            .meshes
+            .mesh
+            .retain(|_| !in_memory.next().copied().unwrap_or(false));
+        let asked = &mut single.camera;
+        if let (true, Some(camera)) = (asked.turntable, self.camera(picture)) {
+            let [_, up, _] = camera.axes();
+            (asked.eye, asked.target) = (Some(Point(camera.eye())), Some(Point(camera.target())));
+            (asked.up, asked.view) = (Point(up), ViewSide::default());
+            asked.fov = camera.fov().to_degrees();
+        }
+        if let Some(time) = self.colored.time(picture)
+            && (asked.time.is_some() || asked.picture_times.is_some())
+        {
+            asked.time = Some(Time::At(time));
+        }
+        (asked.turntable, asked.frames, asked.picture_times) = (false, None, None);
+        recipe_of(&single, &self.left_out)
     }
 
     /// Number of neurons in the pictures.

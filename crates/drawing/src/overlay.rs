@@ -45,4 +45,10 @@ pub(crate) fn tell_lowered(
     if overlay.legend_left_out {
         host.warning("the legend is left out: it needs a larger --size, or use --no-legend");
     }
+    if overlay.bar_left_out {
+        host.warning(
+            "the scale bar is left out: it is longer than the picture is wide, or shorter than a pixel: choose another \
+             length (µm) for --scale-bar, or one that fits",
+        );
+    }
 }

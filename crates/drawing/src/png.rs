@@ -24,6 +24,8 @@ pub struct DrawnImage {
     pub image: Image,
     /// How it was made.
     pub picture: Picture,
+    /// The same as the file tells it.
+    pub(crate) recipe: String,
 }
 
 impl DrawnImage {
@@ -36,7 +38,8 @@ impl DrawnImage {
         let broken = |e: std::io::Error| OutputError::broken(path, e);
         let mut output = Output::create(path, Existing::Replace)?;
         let file = output.file().try_clone().map_err(broken)?;
-        let mut png = begin_png(BufWriter::new(file), &self.picture, true).map_err(broken)?;
+        let mut png =
+            begin_png(BufWriter::new(file), &self.picture, Some(&self.recipe)).map_err(broken)?;
         png.write(&self.image).map_err(broken)?;
         png.finish().map_err(broken)?;
         output.finish()?;
@@ -51,19 +54,22 @@ impl DrawnImage {
 pub fn begin_png<W: Write + 'static>(
     file: W,
     picture: &Picture,
-    tells: bool,
+    recipe: Option<&str>,
 ) -> std::io::Result<PngWriter<W>> {
-    let told = tells.then(|| recipe_of(picture));
     let look = &picture.look;
-    let text = told.as_deref().map(|told| (KEYWORD, told));
+    let text = recipe.map(|recipe| (KEYWORD, recipe));
     PngWriter::with_text(file, look.size.0, look.transparent, text)
 }
 
 /// How a picture is made, as a file tells it.
-pub(crate) fn recipe_of(picture: &Picture) -> String {
+pub(crate) fn recipe_of(picture: &Picture, left_out: &[&str]) -> String {
     let version = env!("CARGO_PKG_VERSION");
     let picture = without_folders(picture);
-    json!({ "format": FORMAT, "version": version, "picture": picture }).to_string()
+    let mut told = json!({ "format": FORMAT, "version": version, "picture": picture });
+    if !left_out.is_empty() {
+        told["left_out"] = json!(left_out);
+    }
+    told.to_string()
 }
 
 /// What a file tells of a picture: names of files without their folders, which are nobody else's business.
@@ -82,11 +88,33 @@ fn without_folders(picture: &Picture) -> Value {
     picture.to_json()
 }
 
+/// How a picture was made, as its file tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recipe {
+    /// The picture, but for which cells it shows.
+    pub picture: Picture,
+    /// What it showed that no file can tell, since it was in memory: of `values`, `colormap` and `meshes`.
+    pub left_out: Vec<String>,
+}
+
+impl Recipe {
+    /// A warning, if something is left out. `file`: the picture's.
+    pub fn warning(&self, file: &Path) -> Option<String> {
+        let what = self.left_out.join(", ");
+        let file = file.display();
+        (!what.is_empty()).then(|| {
+            format!(
+                "{file}: was drawn with {what} in memory, which it does not hold: give them again"
+            )
+        })
+    }
+}
+
 /// How the picture in a PNG file was made.
 ///
 /// # Errors
 /// The file cannot be read, is no PNG, or does not tell.
-pub fn picture_of_png(file: &Path) -> Result<Picture, DrawError> {
+pub fn picture_of_png(file: &Path) -> Result<Recipe, DrawError> {
     let fault = |what: String| DrawError::Failed(format!("{}: {what}", file.display()));
     regular(file).map_err(|e| {
         fault(format!(
@@ -110,10 +138,17 @@ pub fn picture_of_png(file: &Path) -> Result<Picture, DrawError> {
         .map_err(|e| fault(format!("tells nothing that can be read ({e})")))?;
     if told["format"] != FORMAT {
         return Err(fault(format!(
-            "was made by another version ({}): use that one",
+            "tells it in another form, that of neurotess {}: use this version or a later one",
             told["version"].as_str().unwrap_or("unknown")
         )));
     }
     let picture = Picture::from_json(&told["picture"]);
-    picture.map_err(|e: OptionError| fault(e.to_string()))
+    let picture = picture.map_err(|e: OptionError| fault(e.to_string()))?;
+    let left_out = told["left_out"].as_array().into_iter().flatten();
+    Ok(Recipe {
+        picture,
+        left_out: left_out
+            .filter_map(|what| Some(what.as_str()?.to_owned()))
+            .collect(),
+    })
 }

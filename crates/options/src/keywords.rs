@@ -7,6 +7,37 @@ use serde_json::{Map, Value};
 use crate::alike::one_of;
 use crate::{OptionError, Picture, text_of};
 
+/// Options that do not go together with another one, which is given in their place.
+const RIVALS: [(&str, &[&str]); 15] = [
+    ("view", &["eye", "target", "up", "saved_view"]),
+    ("eye", &["view", "saved_view"]),
+    (
+        "color_by",
+        &[
+            "color_by_attribute",
+            "report",
+            "time",
+            "picture_times",
+            "range",
+        ],
+    ),
+    (
+        "color_by_attribute",
+        &["color_by", "report", "time", "picture_times", "range"],
+    ),
+    ("report", &["color_by", "color_by_attribute"]),
+    ("palette", &["set_color", "background"]),
+    ("background", &["transparent"]),
+    ("transparent", &["background"]),
+    ("level", &["lod", "pixels", "budget"]),
+    ("pixels", &["lod", "level", "budget"]),
+    ("lod", &["level", "pixels", "budget"]),
+    ("synapses", &["points", "marker_color_by"]),
+    ("points", &["synapses", "synapse_side", "marker_color_by"]),
+    ("turntable", &["time", "picture_times"]),
+    ("time", &["picture_times", "turntable", "frames"]),
+];
+
 impl Picture {
     /// The names of all options, each with its group.
     pub fn keywords() -> Vec<(String, String)> {
@@ -59,17 +90,35 @@ impl Picture {
         }
     }
 
-    /// The same with the options of these names as another picture has them.
+    /// The same with the options of these names as another picture has them. What does not go together with them is as
+    /// usual: a side instead of an eye, a level instead of an error.
     #[must_use]
     pub fn with(mut self, other: &Self, keywords: &[String]) -> Self {
         let others = value_of(other);
-        for (name, group) in Self::keywords() {
-            if let Some(value) = others.get(&group).and_then(|all| all.get(&name))
-                && keywords.contains(&name)
-            {
+        let usual = value_of(&Self::default());
+        let all = Self::keywords();
+        let mut take = |from: &Map<String, Value>, name: &str| {
+            let Some((_, group)) = all.iter().find(|(known, _)| known == name) else {
+                return;
+            };
+            if let Some(value) = from.get(group).and_then(|options| options.get(name)) {
                 // It was read from this text: it is one that the option can have.
-                drop(self.set_in(&group, &name, value));
+                drop(self.set_in(group, name, value));
             }
+        };
+        for keyword in keywords {
+            let rivals = RIVALS.iter().filter(|(name, _)| name == keyword);
+            for rival in rivals.flat_map(|(_, rivals)| *rivals) {
+                take(&usual, rival);
+            }
+        }
+        for keyword in keywords.iter().filter(|name| *name != "set_color") {
+            take(&others, keyword);
+        }
+        if keywords.iter().any(|name| name == "set_color") {
+            // Beside those that there are.
+            let set = other.colors.set_color.iter().cloned();
+            self.colors.set_color.extend(set);
         }
         self
     }

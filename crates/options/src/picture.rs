@@ -96,6 +96,9 @@ impl Picture {
     pub fn check_values(&self) -> Result<(), OptionError> {
         let colors = &self.colors;
         match (colors.color_by, &colors.report) {
+            (_, None) if self.camera.time.is_some() => {
+                Err(OptionError::together("--time needs a --report, too"))
+            }
             (Some(ColorWhat::Value), None) => {
                 Err(OptionError::together("--color-by value needs a --report"))
             }

@@ -183,7 +183,8 @@ pub fn png_text(
 ) -> std::io::Result<Option<String>> {
     let reader = png::Decoder::new(file).read_info()?;
     let mut texts = reader.info().utf8_text.iter();
-    let found = texts.find(|text| text.keyword == keyword);
+    // Compressed texts may become anything: ours are none.
+    let found = texts.find(|text| text.keyword == keyword && !text.compressed);
     Ok(found
         .map(png::text_metadata::ITXtChunk::get_text)
         .transpose()?)

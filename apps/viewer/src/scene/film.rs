@@ -5,8 +5,8 @@ use neurotess::picture::{Image, KeyColors};
 
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
-use neurotess::drawing::Recolored;
 use crate::scene::still_scene::StillScene;
+use neurotess::drawing::Recolored;
 
 /// Whether the pictures of a film differ in the values of a recording only.
 pub(super) fn is_static(scene: &StillScene, frames: &[FilmFrame], options: &PictureFile) -> bool {

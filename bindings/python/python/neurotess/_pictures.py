@@ -8,7 +8,7 @@ import warnings
 from . import _neurotess, _options
 from ._errors import NeurotessWarning, OptionError
 from ._groups import ungrouped
-from ._scene import DrawnCircuit, check_names, drawing_of
+from ._scene import check_names, drawing_of
 from ._units import times_of
 from ._words import spoken
 
@@ -192,7 +192,8 @@ def render(
     `sample` and `sample_seed`, as in `Circuit.select`; `cache`: whether the meshes of a large circuit are kept beside it for the next time;
     `gpu_memory`: most memory of the adapter for the tracings of large scenes (bytes, or like ``"512MiB"``).
 
-    `like`: a PNG file of neurotess, whose camera, colors and look the picture has, but for the options that are given.
+    `like`: a PNG file of neurotess, whose camera, colors and look the picture has, but for the options that are given (what
+    it switches on stays on). Which cells it shows, and what was in memory, is not in it.
 
     Raises ``ValueError`` for options, and `RenderError` where nothing can be drawn.
     """
@@ -249,6 +250,9 @@ def _times(time: Any) -> tuple[Any, list[float] | None]:
 
 def _check_pairs(options: Mapping[str, Any]) -> None:
     """Checks that options which belong together are there together."""
+    if options.get("like") is not None:
+        # What it is like may have the other one.
+        return
     over_time = "report" if options.get("values") is None else "times"
     for name, other in (("eye", "target"), ("time", over_time)):
         if options.get(name) is not None and options.get(other) is None:
@@ -258,9 +262,6 @@ def _check_pairs(options: Mapping[str, Any]) -> None:
 def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = None) -> Iterator[Image]:
     """All pictures that the options ask for, or those of these times."""
     given, options = options, dict(options)
-    report = options.get("report")
-    if report is not None and isinstance(what, DrawnCircuit):
-        options["report"] = what.reports.get(os.fspath(report), os.fspath(report))
     options["no_legend"] = not options.pop("legend", True)
     options["no_cache"] = not options.pop("cache", True)
     if times is None and options.get("time") is not None:
@@ -270,6 +271,6 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
         warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
     try:
         for number in range(drawing.pictures):
-            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipe)
+            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipes[number])
     finally:
         drawing.close()

@@ -101,10 +101,14 @@ def drawing_of(
     if of_meshes is not None and options.get("range") is None:
         options["range"] = joint_range(still, of_meshes)
     scale = _own_scale(options)
-    for name, is_file in (("points", True), ("report", circuit is not None)):
+    report = options.get("report")
+    named = isinstance(what, DrawnCircuit) and report is not None and os.fspath(report) in what.reports
+    for name, is_file in (("points", True), ("like", True), ("report", circuit is not None and not named)):
         if is_file and options.get(name) is not None:
             _check_file(options[name])
-    options["mesh"], surfaces = words_of(looks)
+    words, surfaces = words_of(looks)
+    if words:
+        options["mesh"] = words
     keywords = _options.keywords({**options, "picture_times": times, "adapter": adapter})
     data = still, series, surfaces, of_meshes, scale
     try:

@@ -124,6 +124,11 @@ impl PictureColors {
             .is_some_and(|series| series.times.len() > 1)
     }
 
+    /// Time (ms) of a picture of a recording.
+    pub(crate) fn time(&self, number: usize) -> Option<f64> {
+        self.series.as_ref()?.times.get(number).copied()
+    }
+
     /// Legend of a picture.
     pub(crate) fn legend(&self, number: usize) -> Legend {
         let legend = self.coloring.legend.clone();

@@ -34,7 +34,6 @@ pub struct CameraOptions {
         arg(
             long,
             value_name = "X,Y,Z",
-            requires = "target",
             conflicts_with = "view",
             allow_hyphen_values = true
         )
@@ -43,12 +42,7 @@ pub struct CameraOptions {
     /// What the eye looks at (µm)
     #[cfg_attr(
         feature = "clap",
-        arg(
-            long,
-            value_name = "X,Y,Z",
-            requires = "eye",
-            allow_hyphen_values = true
-        )
+        arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)
     )]
     pub target: Option<Point>,
     /// What is upwards in the picture
@@ -58,7 +52,6 @@ pub struct CameraOptions {
             long,
             value_name = "X,Y,Z",
             default_value = "0,1,0",
-            requires = "eye",
             allow_hyphen_values = true
         )
     )]
@@ -89,7 +82,6 @@ pub struct CameraOptions {
         arg(
             long,
             value_name = "MS",
-            requires = "report",
             allow_hyphen_values = true,
             help_heading = "Colors"
         )
@@ -123,11 +115,13 @@ impl CameraOptions {
     /// Refuses options that do not go together.
     ///
     /// # Errors
-    /// An eye without a target, or the other way around.
+    /// An eye without a target, or the other way around; a direction upwards without them.
     pub fn check(&self) -> Result<(), OptionError> {
+        let refused = |why: &str| Err(OptionError::together(why));
         match (self.eye, self.target) {
-            (Some(_), None) => Err(OptionError::together("--eye needs --target, too")),
-            (None, Some(_)) => Err(OptionError::together("--target needs --eye, too")),
+            (Some(_), None) => refused("--eye needs --target, too"),
+            (None, Some(_)) => refused("--target needs --eye, too"),
+            (None, None) if self.up != Self::default().up => refused("--up needs --eye, too"),
             _ => Ok(()),
         }
     }

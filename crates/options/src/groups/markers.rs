@@ -31,13 +31,7 @@ pub struct MarkerOptions {
     /// Where synapses are shown: on the cells that they are inputs of, or outputs
     #[cfg_attr(
         feature = "clap",
-        arg(
-            long,
-            value_enum,
-            default_value_t,
-            value_name = "SIDE",
-            requires = "synapses"
-        )
+        arg(long, value_enum, default_value_t, value_name = "SIDE")
     )]
     pub synapse_side: SideOfSynapse,
     /// Show the points of a table: CSV or TSV with columns x, y and z (µm)

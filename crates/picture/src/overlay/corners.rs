@@ -14,6 +14,8 @@ pub struct Overlay {
     kept: Option<Kept>,
     /// Whether there is no room for the legend.
     pub legend_left_out: bool,
+    /// Whether the scale bar would be longer than the picture is wide, or shorter than a pixel.
+    pub bar_left_out: bool,
     /// If the legend covers a part of the scene: the share of the picture's width, on the left
     /// (negative) or on the right, that would have to be free for it.
     pub covering: Option<f64>,
@@ -102,10 +104,15 @@ impl Overlay {
         }
         if let (Some(length), Some(camera)) = (options.scale_bar, cameras.first()) {
             let taken = kept.legend.map(|(corner, _)| corner);
-            let image = bar(camera, length, size, line, ink);
-            let corners: Vec<usize> = [3, 2].into_iter().filter(|&c| Some(c) != taken).collect();
-            let (corner, count) = seen.emptiest(&image, line, &corners);
-            kept.bar = Some((corner, length, count > 0));
+            match bar(camera, length, size, line, ink) {
+                Some(image) => {
+                    let corners = [3, 2].into_iter().filter(|&c| Some(c) != taken);
+                    let corners: Vec<usize> = corners.collect();
+                    let (corner, count) = seen.emptiest(&image, line, &corners);
+                    kept.bar = Some((corner, length, count > 0));
+                }
+                None => overlay.bar_left_out = true,
+            }
         }
         if let (true, Some(camera)) = (options.axes, cameras.first()) {
             let taken = [kept.legend.map(|l| l.0), kept.bar.map(|b| b.0)];
@@ -192,7 +199,9 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
         lay(corner, covers, legend.draw(line, ink));
     }
     if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera) {
-        lay(corner, covers, bar(camera, length, size, line, ink));
+        if let Some(image) = bar(camera, length, size, line, ink) {
+            lay(corner, covers, image);
+        }
     }
     if let (Some((corner, covers)), Some(camera)) = (kept.axes, camera) {
         lay(corner, covers, axes(camera, line));
@@ -200,14 +209,17 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
     pieces
 }
 
-/// A scale bar of this length (µm; 0: as long as fits).
-fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Image {
+/// A scale bar of this length (µm; 0: as long as fits); none that is longer than the picture is wide, or shorter than a
+/// pixel.
+fn bar(camera: &Camera, length: f64, size: [u32; 2], line: f32, ink: Rgb) -> Option<Image> {
     let pixel = camera.pixel_at_target(f64::from(size[1]));
     let length = match length {
         0.0 => nice_length(0.2 * f64::from(size[0]) * pixel),
         length => length,
     };
-    scale_bar(length, (length / pixel) as f32, line, ink)
+    let pixels = length / pixel;
+    let fits = (1.0..=f64::from(size[0]) - 2.0 * f64::from(line)).contains(&pixels);
+    fits.then(|| scale_bar(length, pixels as f32, line, ink))
 }
 
 /// Color of text: black on a light or transparent background, white on a dark one.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use neurotess::drawing::{DrawError, DrawOptions, picture_of_png};
+use neurotess::drawing::{DrawError, DrawOptions, Host, picture_of_png};
 use neurotess::options::GivenPicture;
 use neurotess::options::groups::DeviceOptions;
 
@@ -62,10 +62,16 @@ impl RenderArgs {
     ///
     /// # Errors
     /// The picture that it is to be like does not tell how it was made.
-    pub(crate) fn options(&self) -> Result<DrawOptions, DrawError> {
+    pub(crate) fn options(&self, host: &dyn Host) -> Result<DrawOptions, DrawError> {
         let GivenPicture { picture, given } = &self.given;
         let picture = match &self.like {
-            Some(like) => picture_of_png(like)?.with(picture, given),
+            Some(like) => {
+                let recipe = picture_of_png(like)?;
+                if let Some(warning) = recipe.warning(like) {
+                    host.warning(&warning);
+                }
+                recipe.picture.with(picture, given)
+            }
             None => picture.clone(),
         };
         let mut options = DrawOptions::from(picture);

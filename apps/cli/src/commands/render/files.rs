@@ -42,7 +42,7 @@ pub(super) fn names(out: &Path, picture: &Picture) -> anyhow::Result<Vec<PathBuf
 pub(super) fn write(
     path: &Path,
     args: &RenderArgs,
-    picture: &Picture,
+    (picture, recipe): (&Picture, &str),
     paint: impl FnOnce(&mut dyn FnMut(u32, Image) -> Result<(), DrawError>) -> Result<Cost, DrawError>,
 ) -> Result<Cost, DrawError> {
     let mut output = output::begin(path, args.force)?;
@@ -51,7 +51,11 @@ pub(super) fn write(
         .try_clone()
         .map_err(|e| OutputError::broken(path, e))?;
     let fault = |e: std::io::Error| OutputError::broken(path, e);
-    let png = begin_png(BufWriter::new(file), picture, !args.no_recipe);
+    let png = begin_png(
+        BufWriter::new(file),
+        picture,
+        (!args.no_recipe).then_some(recipe),
+    );
     let mut png = png.map_err(fault)?;
     let cost = paint(&mut |_, band| Ok(png.write(&band).map_err(fault)?))?;
     png.finish().map_err(fault)?;

@@ -28,7 +28,7 @@ use stats::{Document, InputEntry, Stage, Stages, Stats};
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> {
     output::reserve_standard(&args.out, reporter)?;
-    let options = args.options().map_err(told)?;
+    let options = args.options(reporter).map_err(told)?;
     let picture = options.picture.clone();
     let files = files::names(&args.out, &picture)?;
     picture.check().map_err(|e| told(e.into()))?;
@@ -62,7 +62,9 @@ pub(crate) fn run(args: &RenderArgs, reporter: &Reporter) -> anyhow::Result<()> 
     let mut stats = Stats::new(&drawing);
     let progress = Progress::new(reporter, files.len(), "pictures");
     for (number, file) in files.iter().enumerate() {
-        let cost = files::write(file, args, &picture, |take| drawing.paint(number, take));
+        let recipe = drawing.recipe(number);
+        let of = (&picture, &recipe[..]);
+        let cost = files::write(file, args, of, |take| drawing.paint(number, take));
         let cost = cost.map_err(told)?;
         stats.film = drawing.film();
         // Every picture of a film shows the same surface.

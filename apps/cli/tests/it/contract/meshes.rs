@@ -66,7 +66,7 @@ fn a_scaled_mesh_is_the_same_and_only_opaque_ones_move_the_camera() {
     work.file("nm.obj", cube(-30.0, 1e-3));
     work.file("far.obj", cube(500.0, 1.0));
     let draw = |more: &str| {
-        let options = "--size 160x120 --samples 4 --no-legend --force";
+        let options = "--size 160x120 --samples 4 --no-legend --no-recipe --force";
         let run = work.run(&format!("render a.swc -o x.png {more} {options}"));
         run.exits(0);
         work.files(".")[&work.path("x.png")].clone()

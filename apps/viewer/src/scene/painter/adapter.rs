@@ -9,10 +9,10 @@ use neurotess::render::{
 };
 
 use super::{Take, Unmade, refined};
-use neurotess::drawing::Recolored;
 use crate::scene::content;
 use crate::scene::meshes;
 use crate::scene::still_scene::StillScene;
+use neurotess::drawing::Recolored;
 
 /// Draws by an adapter.
 pub(in crate::scene) struct Adapter {

@@ -7,9 +7,9 @@ mod processor;
 
 use std::io;
 
+use neurotess::drawing::Recolored;
 use neurotess::picture::color::ColorTable;
 use neurotess::picture::{AdaptiveSettings, Image, PictureOptions, Viewpoint, Watch};
-use neurotess::drawing::Recolored;
 use neurotess::raster;
 use neurotess::refine::LodCriterion;
 

@@ -9,10 +9,10 @@ use neurotess::picture::{
 use neurotess::raster::{self, PictureError};
 
 use super::{Take, Unmade};
-use neurotess::drawing::Recolored;
 use crate::scene::content;
 use crate::scene::meshes::SceneMesh;
 use crate::scene::still_scene::StillScene;
+use neurotess::drawing::Recolored;
 
 /// Markers and meshes beside the cells, which the processor's scene borrows.
 #[derive(Default)]
