@@ -436,3 +436,18 @@ def test_a_png_tells_how_it_was_made(cell: nt.Morphology, tmp_path: Path) -> Non
     with pytest.raises(nt.RenderError, match="no PNG file"):
         cell.save(tmp_path / "cell.swc")
         nt.render(cell, like=tmp_path / "cell.swc")
+
+
+def test_what_was_in_memory_is_not_in_a_picture_and_is_told(cell: nt.Morphology, tmp_path: Path) -> None:
+    small: dict[str, Any] = {"size": (60, 40), "samples": 1, "legend": False}
+    numbers = np.arange(len(cell), dtype=np.float32)
+    nt.render(cell, values=numbers, meshes=[nt.mesh(cell, level=1)], **small).save(tmp_path / "own.png")
+    with pytest.warns(nt.NeurotessWarning, match="own.png: was drawn with values, meshes in memory"):
+        again = nt.render(cell, like=tmp_path / "own.png")
+    assert np.array_equal(np.asarray(again), np.asarray(nt.render(cell, **small)))
+    # A given side goes before the eye of the picture; switches of NumPy are switches.
+    nt.render(cell, eye=(0, 0, 500), target=(0, 0, 0), **small).save(tmp_path / "eye.png")
+    side = nt.render(cell, like=tmp_path / "eye.png", view="iso", axes=np.False_)
+    assert np.array_equal(np.asarray(side), np.asarray(nt.render(cell, view="iso", **small)))
+    with pytest.raises(FileNotFoundError):
+        nt.render(cell, like=tmp_path / "none.png")

@@ -324,6 +324,48 @@ mod tests {
     }
 
     #[test]
+    fn what_is_given_displaces_what_does_not_go_with_it() {
+        let of = |options: &[(&str, Value)]| {
+            let mut picture = Picture::default();
+            for (name, value) in options {
+                picture.set(name, value).expect(name);
+            }
+            picture
+        };
+        for (before, given, after) in [
+            (
+                vec![("eye", json!([0, 0, 9])), ("target", json!([0, 0, 0]))],
+                ("view", json!("iso")),
+                vec![("view", json!("iso"))],
+            ),
+            (
+                vec![("transparent", json!(true))],
+                ("background", json!("black")),
+                vec![("background", json!("black"))],
+            ),
+            (
+                vec![("pixels", json!(1))],
+                ("level", json!(2)),
+                vec![("level", json!(2))],
+            ),
+            (
+                vec![("color_by_attribute", json!("layer"))],
+                ("color_by", json!("type")),
+                vec![("color_by", json!("type"))],
+            ),
+            (
+                vec![("set_color", json!("axon=#ff0000"))],
+                ("set_color", json!("soma=#000000")),
+                vec![("set_color", json!(["axon=#ff0000", "soma=#000000"]))],
+            ),
+        ] {
+            let names = [given.0.to_owned()];
+            let after = of(&after);
+            assert_eq!(of(&before).with(&of(&[given]), &names), after, "{names:?}");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_says_the_option_and_what_is_possible() {
         for (name, value, told) in [
             (

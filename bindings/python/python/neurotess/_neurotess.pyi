@@ -25,6 +25,7 @@ __all__ = [
     "WIDGET",
     "diff",
     "allow_large",
+    "mesh_all",
     "color_scale",
     "page",
     "png",

@@ -599,3 +599,29 @@ fn a_picture_tells_how_it_was_made_and_others_are_drawn_like_it() {
         run.stderr()
     );
 }
+
+#[neurotess_testing::test]
+fn a_bar_that_does_not_fit_is_left_out_and_a_frame_is_one_picture() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    let small = "--size 80x60 --samples 1 --no-legend --no-recipe";
+    work.run(&format!("render cell.swc -o plain.png {small}"))
+        .exits(0);
+    for length in ["1e12", "1e-9"] {
+        let run = work.run(&format!(
+            "render cell.swc -o x.png --force --scale-bar {length} {small}"
+        ));
+        assert!(run.exits(0).stderr().contains("the scale bar is left out"));
+        let files = work.files(".");
+        assert!(files[&work.path("x.png")] == files[&work.path("plain.png")]);
+    }
+    let small = "--size 80x60 --samples 1 --no-legend";
+    work.run(&format!(
+        "render cell.swc -o turn.png --turntable --frames 3 {small}"
+    ))
+    .exits(0);
+    work.run("render cell.swc -o one.png --like turn_0001.png")
+        .exits(0);
+    let [one, frame] = ["one.png", "turn_0001.png"].map(|name| Picture::read(&work, name));
+    assert!(one.pixels == frame.pixels);
+}
