@@ -198,10 +198,10 @@ fn pieces(kept: &Kept, legend: Option<&Legend>, camera: Option<&Camera>) -> Vec<
     if let (Some((corner, covers)), Some(legend)) = (kept.legend, legend) {
         lay(corner, covers, legend.draw(line, ink));
     }
-    if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera) {
-        if let Some(image) = bar(camera, length, size, line, ink) {
-            lay(corner, covers, image);
-        }
+    if let (Some((corner, length, covers)), Some(camera)) = (kept.bar, camera)
+        && let Some(image) = bar(camera, length, size, line, ink)
+    {
+        lay(corner, covers, image);
     }
     if let (Some((corner, covers)), Some(camera)) = (kept.axes, camera) {
         lay(corner, covers, axes(camera, line));
