@@ -451,3 +451,9 @@ def test_what_was_in_memory_is_not_in_a_picture_and_is_told(cell: nt.Morphology,
     assert np.array_equal(np.asarray(side), np.asarray(nt.render(cell, view="iso", **small)))
     with pytest.raises(FileNotFoundError):
         nt.render(cell, like=tmp_path / "none.png")
+
+
+def test_a_group_is_a_dictionary(cell: nt.Morphology) -> None:
+    wrong: Any = "iso"
+    with pytest.raises(nt.OptionError, match=r"^camera='iso': a dictionary is needed, as in \{'view': …\}$"):
+        nt.render(cell, camera=wrong)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from ._errors import OptionError
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from typing import Any
 
 #: By group the name of an option in it, and outside.
@@ -31,6 +34,9 @@ def ungrouped(options: Mapping[str, Any]) -> dict[str, Any]:
     """All options without groups. What is said twice is an error."""
     flat = {name: value for name, value in options.items() if name not in GROUPS}
     for group, names in GROUPS.items():
+        if not isinstance(options.get(group) or {}, Mapping):
+            needed = f"a dictionary is needed, as in {{{next(iter(names))!r}: …}}"
+            raise OptionError(f"{group}={options[group]!r}: {needed}", group, needed)
         for name, value in (options.get(group) or {}).items():
             if name not in names:
                 from difflib import get_close_matches
