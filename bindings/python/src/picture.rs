@@ -94,9 +94,6 @@ pub(crate) struct Drawing {
     /// How many pictures the options ask for.
     #[pyo3(get)]
     pictures: usize,
-    /// How each is made, as PNG files tell it.
-    #[pyo3(get)]
-    recipes: Vec<String>,
     /// Whether nothing is behind the cells.
     #[pyo3(get)]
     transparent: bool,
@@ -271,7 +268,6 @@ impl Drawing {
         let (drawing, messages) = made.map_err(|e| undrawn(py, &e))?;
         Ok(Self {
             pictures: drawing.pictures(),
-            recipes: (0..drawing.pictures()).map(|n| drawing.recipe(n)).collect(),
             transparent: drawing.options().picture.look.transparent,
             by_adapter: drawing.by_adapter(),
             shared: Arc::new(Mutex::new(Some(drawing))),
@@ -297,6 +293,13 @@ impl Drawing {
         self.with(py, move |drawing, stopped| {
             drawing.draw_from(picture, camera, (size, samples), stopped)
         })
+    }
+
+    /// How a picture is made, as PNG files tell it.
+    fn recipe(&self, picture: usize) -> PyResult<String> {
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let drawing = shared.as_ref().ok_or_else(closed)?;
+        Ok(drawing.recipe(picture))
     }
 
     /// The camera of a picture.

@@ -86,6 +86,11 @@ impl Picture {
         self.refinement.mode()?;
         self.camera.check()?;
         self.camera.series()?;
+        if self.colors.color_by.is_some() && self.colors.color_by_attribute.is_some() {
+            return Err(OptionError::together(
+                "--color-by cannot be used with --color-by-attribute: leave out one of them",
+            ));
+        }
         self.markers.check()
     }
 

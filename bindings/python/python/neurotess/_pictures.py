@@ -271,6 +271,6 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
         warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
     try:
         for number in range(drawing.pictures):
-            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipes[number])
+            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipe(number))
     finally:
         drawing.close()

@@ -121,6 +121,9 @@ impl CameraOptions {
         match (self.eye, self.target) {
             (Some(_), None) => refused("--eye needs --target, too"),
             (None, Some(_)) => refused("--target needs --eye, too"),
+            (Some(_), _) if self.view != ViewSide::default() => {
+                refused("--view cannot be used with --eye: leave out one of them")
+            }
             (None, None) if self.up != Self::default().up => refused("--up needs --eye, too"),
             _ => Ok(()),
         }

@@ -23,6 +23,17 @@ pub(super) fn draw(
     (args, options): (&RenderArgs, &DrawOptions),
     reporter: &Reporter,
 ) -> anyhow::Result<()> {
+    const TAKEN: [&str; 4] = ["size", "samples", "transparent", "saved_view"];
+    let mut given = args.given.given.iter();
+    if let Some(other) = given.find(|name| !TAKEN.contains(&name.as_str())) {
+        return usage(format!(
+            "a session is drawn in its own view and look: leave out --{}",
+            other.replace('_', "-")
+        ));
+    }
+    if args.like.is_some() {
+        return usage("a session is drawn in its own view and look: leave out --like");
+    }
     let [out] = files else {
         return usage("a session is one picture: leave out --turntable and times");
     };

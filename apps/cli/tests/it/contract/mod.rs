@@ -14,6 +14,7 @@ mod html;
 mod info;
 mod inputs;
 mod kill;
+mod like;
 mod markers;
 mod mesh;
 mod meshes;

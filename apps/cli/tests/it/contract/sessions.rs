@@ -34,6 +34,9 @@ fn sessions_are_drawn_without_a_driver() {
     run_to("a.png", "").exits(0);
     let hues = Picture::read(&work, "a.png").hues().len();
     assert!(hues > 3, "{hues}");
+    // What a session does not take is not left aside silently.
+    let other = run_to("x.png", "--color-by depth").exits(2);
+    assert!(other.stderr().contains("leave out --color-by"));
     run_to("b.png", "--adapter CPU").exits(0);
     assert_eq!(
         Picture::read(&work, "a.png").pixels,
