@@ -19,8 +19,8 @@ mod ui;
 pub use io::background::wait_for_background;
 pub use model::command::Command;
 pub use model::{
-    changes, command, crossings, document, markers, measuring, partners, placing, playback, plots,
-    save, session, settings, sources, split, state, traces, view,
+    changes, command, crossings, document, markers, measuring, partners, picture, placing,
+    playback, plots, save, session, settings, sources, split, state, traces, view,
 };
 pub use scene::headless::{ChooseAdapter, SessionPicture, draw_session};
 pub use scene::stage::Stage;

@@ -138,9 +138,12 @@ impl Drawing {
         } = own;
         let in_memory: Vec<bool> = surfaces.iter().map(Option::is_some).collect();
         let left_out = [
-            ("values", numbers.is_some() || mesh_values.is_some()),
-            ("colormap", asked.scale.is_some()),
-            ("meshes", in_memory.contains(&true)),
+            (
+                "values in memory",
+                numbers.is_some() || mesh_values.is_some(),
+            ),
+            ("a colormap in memory", asked.scale.is_some()),
+            ("meshes in memory", in_memory.contains(&true)),
         ];
         let left_out = left_out.into_iter().filter(|(_, is)| *is);
         let left_out = left_out.map(|(what, _)| what).collect();

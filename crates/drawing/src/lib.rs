@@ -44,6 +44,6 @@ pub use painter::{
     wanted,
 };
 pub use pick::Picked;
-pub use png::{DrawnImage, KEYWORD as PNG_KEYWORD, Recipe, begin_png, picture_of_png};
+pub use png::{DrawnImage, KEYWORD as PNG_KEYWORD, Recipe, begin_png, picture_of_png, recipe_of};
 pub use scene::markers::read_markers;
 pub use scene::{CircuitInstances, Scene, of_memory, read_circuit, read_files};

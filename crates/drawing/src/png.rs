@@ -61,8 +61,8 @@ pub fn begin_png<W: Write + 'static>(
     PngWriter::with_text(file, look.size.0, look.transparent, text)
 }
 
-/// How a picture is made, as a file tells it.
-pub(crate) fn recipe_of(picture: &Picture, left_out: &[&str]) -> String {
+/// How a picture is made, as a file tells it. `left_out`: what it shows that the options do not tell.
+pub fn recipe_of(picture: &Picture, left_out: &[&str]) -> String {
     let version = env!("CARGO_PKG_VERSION");
     let picture = without_folders(picture);
     let mut told = json!({ "format": FORMAT, "version": version, "picture": picture });
@@ -93,7 +93,7 @@ fn without_folders(picture: &Picture) -> Value {
 pub struct Recipe {
     /// The picture, but for which cells it shows.
     pub picture: Picture,
-    /// What it showed that no file can tell, since it was in memory: of `values`, `colormap` and `meshes`.
+    /// What it showed that options do not tell: `values`, `colormap` and `meshes` in memory, or what only the window has.
     pub left_out: Vec<String>,
 }
 
@@ -103,9 +103,7 @@ impl Recipe {
         let what = self.left_out.join(", ");
         let file = file.display();
         (!what.is_empty()).then(|| {
-            format!(
-                "{file}: was drawn with {what} in memory, which it does not hold: give them again"
-            )
+            format!("{file}: was drawn with {what}, which it does not hold: give that again")
         })
     }
 }

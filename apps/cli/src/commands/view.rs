@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use neurotess::batch::{Inputs, MORPHOLOGIES};
-use neurotess::options::groups::{DeviceOptions, MarkerOptions as AskedMarkers, Rings};
-use neurotess::options::words::MeshBeside;
-use neurotess::options::{MeshesBeside, OptionError};
+use neurotess::drawing::picture_of_png;
+use neurotess::options::groups::DeviceOptions;
+use neurotess::options::words::Fit;
+use neurotess::options::{GivenPicture, Picture};
 use neurotess_viewer::CommandListener;
-use neurotess_viewer::document::{MarkerOptions, MeshEntry, SomaEdit};
+use neurotess_viewer::picture::NOT_TAKEN;
+use neurotess_viewer::session::is_session;
 
 use crate::options::cache::CacheArgs;
 use crate::report::{Reporter, usage};
@@ -24,29 +26,29 @@ use crate::report::{Reporter, usage};
   neurotess view circuit/ --report circuit/reports/voltage.h5
   neurotess view circuit/ --synapses --marker-color-by conductance
   neurotess view circuit/ --mesh region.obj,opacity=0.2
+  neurotess view cell.swc --color-by depth --background black --view top
+  neurotess view other.swc --like cell.png
   neurotess view yesterday.neurotess")]
 pub(crate) struct ViewArgs {
     /// Morphology files, folders (searched recursively), globs, circuits, or a session that the
     /// window saved; nothing: a window to open files in
     #[arg(value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) rings: Rings,
-    /// Values of a simulation of the circuit: a SONATA report, or a file of spikes
-    #[arg(long, value_name = "FILE", requires = "inputs")]
-    pub(crate) report: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) markers: AskedMarkers,
-    #[command(flatten)]
-    pub(crate) meshes: MeshesBeside,
+    /// Show cells as this picture does, a PNG file of render, of Python or of the window: camera, colors, look. Options
+    /// that are given go before its own
+    #[arg(long, value_name = "PICTURE.png")]
+    pub(crate) like: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cache: CacheArgs,
     #[command(flatten)]
     pub(crate) device: DeviceOptions,
+    #[command(flatten)]
+    pub(crate) given: GivenPicture,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    let (picture, given) = picture(args, reporter)?;
     let mut inputs = Vec::new();
     for input in &args.inputs {
         // Folders and circuits are searched by the window's threads; only globs are expanded here.
@@ -62,13 +64,8 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     }
     let options = neurotess_viewer::Options {
         inputs,
-        soma: SomaEdit {
-            rings: args.rings.positions(),
-            ..SomaEdit::default()
-        },
-        report: args.report.clone(),
-        markers: markers(&args.markers).or_else(|e| usage(e.to_string()))?,
-        meshes: args.meshes.mesh.iter().enumerate().map(mesh).collect(),
+        picture,
+        given,
         without_caches: args.cache.no_cache,
         adapter: args.device.adapter.clone(),
         gpu_memory: args.device.gpu_memory.map(|bytes| bytes.0),
@@ -82,34 +79,52 @@ pub(crate) fn run(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<()> {
     Ok(ended?)
 }
 
-/// What the window shows of synapses and points.
-fn markers(asked: &AskedMarkers) -> Result<MarkerOptions, OptionError> {
-    asked.check()?;
-    let usual = MarkerOptions::default();
-    let by = asked.marker_color_by.clone();
-    Ok(MarkerOptions {
-        synapses: asked.synapses.is_some(),
-        edges: asked.populations(),
-        side: asked.synapse_side.into(),
-        property: by.clone().filter(|_| asked.synapses.is_some()),
-        column: by.filter(|_| asked.points.is_some()),
-        points: asked.points.clone(),
-        shape: asked.shape(),
-        size: asked.marker_size.map_or(usual.size, |size| size.0 as f32),
-        ..usual
-    })
-}
-
-/// A mesh of the window. There the camera fits what one cannot see through.
-fn mesh((index, arg): (usize, &MeshBeside)) -> MeshEntry {
-    let usual = MeshEntry::new(arg.file.clone(), index);
-    MeshEntry {
-        color: arg.color.map_or(usual.color, |color| color.0),
-        opacity: arg.opacity as f32,
-        edges: arg.edges,
-        scale: arg.scale as f32,
-        ..usual
+/// What is asked for of the picture, and the names of its options.
+fn picture(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<(Picture, Vec<String>)> {
+    let GivenPicture { picture, given } = &args.given;
+    for (name, why) in NOT_TAKEN {
+        if given.iter().any(|given| given == name) {
+            return usage(format!("leave out --{}: {why}", name.replace('_', "-")));
+        }
     }
+    let length = |fit: Option<Fit>| matches!(fit, Some(Fit::Length(length)) if length > 0.0);
+    for (name, fit) in [
+        ("scale-bar", picture.look.scale_bar),
+        ("ao", picture.look.ao),
+    ] {
+        if length(fit) {
+            return usage(format!(
+                "--{name} fits by itself in the window: give no length"
+            ));
+        }
+    }
+    let asked = args.like.is_some() || !given.is_empty();
+    if asked && args.inputs.iter().any(|input| is_session(input)) {
+        return usage("a session has its own look: leave out all options of pictures");
+    }
+    if picture.colors.report.is_some() && args.inputs.is_empty() {
+        return usage("--report is of cells: give these, too");
+    }
+    let (picture, given) = match &args.like {
+        Some(like) => {
+            let recipe = picture_of_png(like)?;
+            if let Some(warning) = recipe.warning(like) {
+                reporter.warning(&warning);
+            }
+            let all = Picture::keywords().into_iter().map(|(name, _)| name);
+            let taken = all.filter(|name| NOT_TAKEN.iter().all(|(not, _)| not != name));
+            (recipe.picture.with(picture, given), taken.collect())
+        }
+        None => (picture.clone(), given.clone()),
+    };
+    picture.check().or_else(|e| usage(e.to_string()))?;
+    if given
+        .iter()
+        .any(|name| name == "report" || name == "range" || name == "time")
+    {
+        picture.check_values().or_else(|e| usage(e.to_string()))?;
+    }
+    Ok((picture, given))
 }
 
 /// `--verbose`: every command that runs, on standard error.

@@ -15,6 +15,7 @@ pub mod measuring;
 pub(crate) mod meshes;
 pub(crate) mod numbers;
 pub mod partners;
+pub mod picture;
 pub mod placing;
 pub mod playback;
 pub mod plots;

@@ -133,6 +133,8 @@ pub struct PictureFile {
     pub transparent: bool,
     /// Whether the file may be replaced.
     pub replace: bool,
+    /// Whether the file tells how the picture was made.
+    pub recipe: bool,
 }
 
 /// A film: numbered pictures along key views, through a recording's time, or both.
@@ -187,6 +189,7 @@ impl SaveForm {
                 samples: 16,
                 transparent: false,
                 replace: false,
+                recipe: true,
             },
             film_out: String::new(),
             frames: 60,

@@ -7,7 +7,7 @@ use itertools::Itertools;
 use neurotess::coloring::{ClosestColors, Coloring, Recording, closest};
 use neurotess::mesh::CoarseMesh;
 use neurotess::render::bounds::{bounds, merged};
-use neurotess::render::color::ColorTable;
+use neurotess::render::color::{ColorTable, Rgb};
 use neurotess::render::overlay::Legend;
 use neurotess::render::state::{GHOSTED, HIGHLIGHTED, WITHOUT_NEURITES, WITHOUT_SOMA};
 use neurotess::render::{
@@ -27,7 +27,7 @@ use crate::scene::templates::SceneTemplate;
 /// Width (pixels) of a wireframe's lines.
 const WIRE: f32 = 1.0;
 /// Color of selected neurons.
-pub(crate) const SELECTION: [u8; 3] = [255, 140, 0];
+pub(crate) const SELECTION: Rgb = [255, 140, 0];
 
 /// Why there is no scene.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -299,14 +299,20 @@ pub(crate) fn states(document: &Document) -> Vec<u32> {
     (0..document.neurons.len()).map(state).collect()
 }
 
+/// Color of selected neurons and its share, and opacity of others beside them.
+pub(crate) fn of_states(look: &Look) -> ((Rgb, f32), f32) {
+    ((SELECTION, 0.75), look.ghost_opacity.clamp(0.0, 1.0))
+}
+
 /// Light, wireframe and colors of states. `least_width`: of neurites (pixels).
 pub(crate) fn surface_look(look: &Look, least_width: f32) -> neurotess::render::Look {
+    let (highlighted, ghosted) = of_states(look);
     neurotess::render::Look {
         light: look.light.light(),
         wire: if look.wireframe { WIRE } else { 0.0 },
         clip: None,
-        highlighted: (SELECTION, 0.75),
-        ghosted: look.ghost_opacity.clamp(0.0, 1.0),
+        highlighted,
+        ghosted,
         contrast: Some(look.background),
         least_width,
     }

@@ -10,6 +10,7 @@ use crate::io::find::{self, OpenRequest};
 use crate::io::task::Progress;
 use crate::io::{self, load};
 use crate::model::film::FilmFrame;
+use crate::model::picture::ToldPicture;
 use crate::model::save::PictureFile;
 use crate::model::session::Session;
 use crate::model::settings::Settings;
@@ -155,5 +156,6 @@ fn still_scene(state: &State, drawn: &mut SessionPicture) -> StillScene {
         around: state.mesh_points(true),
         meshes,
         figures: dimensions::figures(state),
+        told: ToldPicture::of(&state.document),
     }
 }

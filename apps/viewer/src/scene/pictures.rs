@@ -6,17 +6,17 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use itertools::Itertools;
+use neurotess::drawing::{begin_png, recipe_of};
 use neurotess::output::{Output, OutputError};
 use neurotess::picture::color::ColorTable;
-use neurotess::picture::{
-    BoundingSphere, Image, Occlusion, PictureOptions, PngWriter, Viewpoint, Watch,
-};
+use neurotess::picture::{BoundingSphere, Image, PictureOptions, PngWriter, Viewpoint, Watch};
 
 use crate::io::save::existing;
 use crate::io::task::Progress;
 use crate::model::film::FilmFrame;
 use crate::model::save::PictureFile;
 use crate::model::targets::film_files;
+use crate::model::view::View;
 use crate::scene::content;
 use crate::scene::film;
 use crate::scene::painter::{Beside, Painter, Unmade};
@@ -65,7 +65,13 @@ pub(crate) fn pictures(
         let broken = |e: io::Error| OutputError::broken(file, e).to_string();
         let mut output = Output::create(file, existing).map_err(|e| e.to_string())?;
         let to = BufWriter::new(output.file().try_clone().map_err(broken)?);
-        let mut png = PngWriter::new(to, options.size, options.transparent).map_err(broken)?;
+        let told = still_scene
+            .told
+            .file(options, &film_frame.view, film_frame.time);
+        let recipe = options
+            .recipe
+            .then(|| recipe_of(&told, &still_scene.told.left_out));
+        let mut png = begin_png(to, &told, recipe.as_deref()).map_err(broken)?;
         let annotations = still_scene.annotations(&camera, options);
         let mut lay = |top: u32, mut band: Image| {
             annotations.lay_on(top, &mut band);
@@ -121,20 +127,12 @@ fn write<W: Write>(png: &mut PngWriter<W>, band: &Image, progress: &Progress) ->
     Ok(())
 }
 
+/// How the scene is drawn: as options tell it, with what only the window has.
 fn picture_options(still_scene: &StillScene, options: &PictureFile) -> PictureOptions {
     let look = &still_scene.look;
-    let mut surface = content::surface_look(look, still_scene.least_width(options.size));
-    surface.clip = content::clip(look, &still_scene.spheres);
-    PictureOptions {
-        size: options.size,
-        samples: options.samples,
-        background: (!options.transparent).then_some(look.background),
-        look: surface,
-        occlusion: if look.occlusion {
-            Occlusion::Fit
-        } else {
-            Occlusion::Off
-        },
-        ..PictureOptions::default()
-    }
+    let told = still_scene.told.file(options, &View::default(), None);
+    let mut picture = told.drawn(still_scene.least_width(options.size));
+    picture.look.clip = content::clip(look, &still_scene.spheres);
+    (picture.look.highlighted, picture.look.ghosted) = content::of_states(look);
+    picture
 }

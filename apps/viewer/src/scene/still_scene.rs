@@ -9,6 +9,7 @@ use neurotess::render::{BoundingSphere, Camera, Gpu, Look, MarkerSettings, Marke
 use crate::model::document;
 use crate::model::film::FilmFrame;
 use crate::model::measuring::Figure;
+use crate::model::picture::ToldPicture;
 use crate::model::playback::said;
 use crate::model::save::PictureFile;
 use crate::scene::colors::color_scheme;
@@ -35,6 +36,8 @@ pub(crate) struct StillScene {
     pub(crate) form: (MarkerShape, f64),
     /// Dimensions that show.
     pub(crate) figures: Vec<Figure>,
+    /// The same in the words of options, which files tell.
+    pub(crate) told: ToldPicture,
 }
 
 impl StillScene {

@@ -7,13 +7,13 @@ use std::time::Duration;
 
 use eframe::egui::{self, ViewportBuilder};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use neurotess::options::Picture;
 use neurotess::render::adapter::{device_descriptor, select_adapter};
 use neurotess::render::{DeviceError, Gpu};
 use thiserror::Error;
 
 use crate::io::background::wait_for_background;
-use crate::model::command::{Command, Edit};
-use crate::model::document::{MarkerOptions, MeshEntry, SomaEdit};
+use crate::model::command::Command;
 use crate::model::settings::{self, Settings};
 use crate::ui::app::{CommandListener, EVERY, Viewer, lost};
 
@@ -22,14 +22,10 @@ use crate::ui::app::{CommandListener, EVERY, Viewer, lost};
 pub struct Options {
     /// Files, folders, circuits or a session to open.
     pub inputs: Vec<PathBuf>,
-    /// How their somata are generated, except those of a session.
-    pub soma: SomaEdit,
-    /// A report or spikes to show on them.
-    pub report: Option<PathBuf>,
-    /// Synapses and points to show beside them; those of a session are its own.
-    pub markers: MarkerOptions,
-    /// Meshes to show beside them, besides those of a session.
-    pub meshes: Vec<MeshEntry>,
+    /// How they are shown.
+    pub picture: Picture,
+    /// Names of the options that the picture is asked for; all others are as the window has them.
+    pub given: Vec<String>,
     /// Whether caches of circuits are neither read nor written, whatever the settings say.
     pub without_caches: bool,
     /// Adapter to draw with: a part of its name.
@@ -174,8 +170,7 @@ impl Window {
             .clone()
             .ok_or("the window has no device")?;
         let (settings, said) = Settings::load();
-        let viewer = Viewer::new(&context.egui_ctx, render, settings)?;
-        let mut viewer = viewer.with_soma(options.soma);
+        let mut viewer = Viewer::new(&context.egui_ctx, render, settings)?;
         if let Some(folder) = settings::folder() {
             viewer = viewer.with_autosave(&folder, EVERY);
         }
@@ -192,17 +187,7 @@ impl Window {
         if !options.inputs.is_empty() {
             viewer.state.run(Command::Open(options.inputs));
         }
-        if options.report.is_some() {
-            viewer.state.run(Edit::SetReport(options.report));
-        }
-        if options.markers != MarkerOptions::default() {
-            viewer
-                .state
-                .run(Edit::SetMarkers(Box::new(options.markers)));
-        }
-        if !options.meshes.is_empty() {
-            viewer.state.run(Edit::AddMeshes(options.meshes));
-        }
+        viewer.show_as(&options.picture, &options.given);
         Ok(Self {
             viewer,
             fatal,

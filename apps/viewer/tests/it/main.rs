@@ -6,6 +6,7 @@ mod dropping;
 mod file_dialog;
 mod focusing;
 mod input;
+mod likeness;
 mod lists;
 mod measuring;
 mod menus;

@@ -259,6 +259,7 @@ fn dimensions_go_with_neurons_sessions_and_saved_pictures() {
             samples: 1,
             transparent: false,
             replace: true,
+            recipe: true,
         };
         run(window, Command::SavePicture(options));
         fs::read(out).expect("saved")

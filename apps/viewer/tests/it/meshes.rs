@@ -162,6 +162,7 @@ fn sessions_and_saved_pictures_have_them() {
         samples: 4,
         transparent: false,
         replace: true,
+        recipe: true,
     };
     run(&mut window, Command::SavePicture(options("window.png")));
     let [with, without] = ["with.png", "without.png"].map(|name| {

@@ -69,6 +69,7 @@ fn a_picture_says_its_bands_lets_a_session_be_saved_and_stops() {
         samples: 16,
         transparent: false,
         replace: false,
+        recipe: true,
     };
     state(&mut window).run(Command::SavePicture(picture.clone()));
     wait(&mut window, "the first band", |window| {
@@ -110,6 +111,7 @@ fn a_picture_says_its_bands_lets_a_session_be_saved_and_stops() {
         samples: 4,
         transparent: false,
         replace: false,
+        recipe: true,
     };
     run(&mut window, Command::SavePicture(small));
     assert_eq!(names(folder.path()), ["meanwhile.neurotess", "small.png"]);
@@ -127,6 +129,7 @@ fn saved_pictures_have_the_axes_that_show() {
             samples: 1,
             transparent: false,
             replace: false,
+            recipe: true,
         };
         state(window).run(Command::SavePicture(options));
         // When the file is there, the next one is not taken yet.

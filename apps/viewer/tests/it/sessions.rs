@@ -130,6 +130,7 @@ fn the_processor_draws_sessions_as_an_adapter_does() {
                 samples: 16,
                 transparent: false,
                 replace: false,
+                recipe: true,
             };
             let file = folder.path().join(format!("{session}.neurotess"));
             let drawn = draw_session(&file, &picture, None, &|_| Ok(gpu.cloned()), true);

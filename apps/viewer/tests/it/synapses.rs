@@ -488,6 +488,7 @@ fn sessions_and_saved_pictures_have_synapses_and_points() {
         samples: 4,
         transparent: false,
         replace: false,
+        recipe: true,
     };
     run(&mut window, Command::SavePicture(save("saved.png")));
     run(&mut window, Command::SaveSession(at("mine.neurotess")));

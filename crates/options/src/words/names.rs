@@ -105,6 +105,20 @@ impl From<ViewSide> for Side {
     }
 }
 
+impl From<Side> for ViewSide {
+    fn from(side: Side) -> Self {
+        match side {
+            Side::Front => Self::Front,
+            Side::Back => Self::Back,
+            Side::Left => Self::Left,
+            Side::Right => Self::Right,
+            Side::Top => Self::Top,
+            Side::Bottom => Self::Bottom,
+            Side::Iso => Self::Iso,
+        }
+    }
+}
+
 /// How the soma is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]

@@ -43,6 +43,7 @@ pub(super) fn draw(
         samples: options.picture.look.samples.0,
         transparent: options.picture.look.transparent,
         replace: args.force,
+        recipe: !args.no_recipe,
     };
     let wanted = wanted(options).map_err(super::told)?;
     let drawn = neurotess_viewer::draw_session(

@@ -54,6 +54,16 @@ fn the_command_has_what_the_page_says() {
     }
 }
 
+#[cfg(feature = "view")]
+#[neurotess_testing::test]
+fn the_window_has_what_the_page_says() {
+    let not_taken = neurotess_viewer::picture::NOT_TAKEN;
+    for row in rows() {
+        let taken = not_taken.iter().all(|(not, _)| *not != name(&row));
+        assert_eq!(row[4] == "yes", taken, "{}", row[0]);
+    }
+}
+
 #[neurotess_testing::test]
 fn python_has_what_the_page_says() {
     let file = root().join("bindings/python/python/neurotess/_pictures.py");

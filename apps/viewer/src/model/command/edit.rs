@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
+use neurotess::options::Picture;
 use neurotess::render::{MarkerShape, Placement};
 
 use crate::model::document::{
@@ -53,6 +54,8 @@ pub enum Edit {
     GrowSpines(Option<SpineEdit>),
     /// Changes colors and light.
     SetLook(Box<Look>),
+    /// Shows what a picture shows, as far as options tell it: colors, look, markers, meshes.
+    TakePicture(Box<Picture>),
     /// Shows everything as it is: undoes what *Look* and *Detail* hide and enlarge. Taste stays.
     ResetLook,
     /// Sets whether y points down.
@@ -119,7 +122,7 @@ impl Edit {
             Self::SetRing(..) | Self::ResetRings(_) => "First ring",
             Self::SetSpines(_, Some(_)) | Self::GrowSpines(Some(_)) => "Spines",
             Self::SetSpines(_, None) | Self::GrowSpines(None) => "Remove spines",
-            Self::SetLook(_) => "Look",
+            Self::SetLook(_) | Self::TakePicture(_) => "Look",
             Self::ResetLook => "Reset look",
             Self::SetYDown(_) => "Direction of y",
             Self::SetDetail(_) => "Detail",
@@ -172,6 +175,7 @@ impl Edit {
                 | Self::SetReport(_)
                 | Self::SetPoints(_)
                 | Self::AddMeshes(_)
+                | Self::TakePicture(_)
         )
     }
 
@@ -247,6 +251,7 @@ impl Edit {
                 document.set_spines(&sources, spines);
             }
             Self::SetLook(look) => document.look = *look,
+            Self::TakePicture(picture) => document.take(&picture),
             Self::ResetLook => {
                 let look = std::mem::take(&mut document.look);
                 document.look = Look {

@@ -159,6 +159,21 @@ pub enum Lighting {
 }
 
 impl Lighting {
+    /// The same in the window's words.
+    pub(crate) fn of(light: Light) -> Self {
+        match light {
+            Light::Soft => Self::Soft,
+            Light::Flat => Self::Flat,
+            Light::From(way) => {
+                let way = way.normalize_or(glam::Vec3::Z);
+                Self::From {
+                    right: way.x.atan2(way.z).to_degrees(),
+                    up: way.y.asin().to_degrees(),
+                }
+            }
+        }
+    }
+
     pub(crate) fn light(self) -> Light {
         match self {
             Self::Soft => Light::Soft,

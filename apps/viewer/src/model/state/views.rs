@@ -5,6 +5,7 @@ use neurotess::render::Side;
 use super::{CellPart, Effect, State};
 use crate::model::command::{Command, Edit, Listed, listed};
 use crate::model::document::SavedView;
+use crate::model::picture::ToldPicture;
 use crate::model::sources::extent;
 use crate::model::split::Split;
 use crate::model::view::View;
@@ -73,6 +74,16 @@ impl State {
             let (low, high) = extent(&spheres);
             let sphere = ((low + high) / 2.0, (high - low).length() / 2.0);
             self.effects.push(Effect::Go(self.view.focused(sphere)));
+        }
+    }
+
+    /// What is shown, in the words of options.
+    pub(crate) fn told(&self) -> ToldPicture {
+        // With y downwards, other sides show the same.
+        let fitted = self.views.fitted.filter(|_| !self.document.y_down);
+        ToldPicture {
+            fitted: fitted.map(|side| (side, self.view)),
+            ..ToldPicture::of(&self.document)
         }
     }
 

@@ -60,6 +60,7 @@ impl Stage {
         self.set_rest_detail(&params, detail);
         let (content, markers, meshes) = self.saved_content(state);
         let scene = StillScene {
+            told: state.told(),
             gpu: None,
             content,
             look: state.document.look.clone(),

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Viewer;
+use super::likeness::is_picture;
 use crate::io::find::{Found, OpenRequest};
 use crate::model::command::{Command, Edit};
 use crate::model::document::{Neuron, Neurons, SourceId};
@@ -25,6 +26,14 @@ pub(super) struct Loading {
 
 impl Viewer {
     pub(super) fn load(&mut self, paths: Vec<PathBuf>) {
+        let (pictures, paths): (Vec<_>, Vec<_>) =
+            paths.into_iter().partition(|path| is_picture(path));
+        if let Some(picture) = pictures.last() {
+            self.show_like(picture);
+            if paths.is_empty() {
+                return;
+            }
+        }
         if self.loading.is_some() {
             self.waiting.extend(paths);
             return;
@@ -200,17 +209,6 @@ impl Viewer {
         self.state.document.neurons.append(neurons);
     }
 
-    fn home(&mut self) {
-        self.state.run(Command::Home);
-        for effect in std::mem::take(&mut self.state.effects) {
-            match effect {
-                // Nothing was shown before, so there is nothing to fly from.
-                Effect::Go(view) => self.motion.jump(&mut self.state, view),
-                other => self.effect(other),
-            }
-        }
-    }
-
     pub(super) fn end_loading(&mut self) {
         let Some(loading) = self.loading.take() else {
             return;
@@ -255,6 +253,8 @@ impl Viewer {
                 self.open(&neurons);
                 if loading.first {
                     self.home();
+                    // More files are seen beside these.
+                    self.looked = None;
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 mod autosave;
 mod crossings;
+mod likeness;
 mod loading;
 mod messages;
 mod palettes;
@@ -15,6 +16,7 @@ use std::time::Instant;
 
 use eframe::egui;
 use egui_wgpu::RenderState;
+use neurotess::options::groups::CameraOptions;
 use neurotess::render::DeviceError;
 
 use crate::io::single::Single;
@@ -73,6 +75,8 @@ pub struct Viewer {
     remembered: Settings,
     /// How the somata of files that are opened first are generated.
     soma: SomaEdit,
+    /// Where the cells that are opened first are seen from, if not from the front.
+    looked: Option<CameraOptions>,
     /// Whether circuits have no caches, whatever the settings say.
     without_caches: bool,
     /// When the recording's time was last advanced.
@@ -128,6 +132,7 @@ impl Viewer {
             fits_screen: false,
             remembered: settings,
             soma: SomaEdit::default(),
+            looked: None,
             without_caches: false,
             ticked: Instant::now(),
             autosave: None,
@@ -141,12 +146,6 @@ impl Viewer {
     /// settings' folder.
     pub fn with_rescue(mut self, folder: PathBuf) -> Self {
         self.rescue = folder;
-        self
-    }
-
-    /// Sets how the somata of files that are opened first are generated.
-    pub fn with_soma(mut self, soma: SomaEdit) -> Self {
-        self.soma = soma;
         self
     }
 

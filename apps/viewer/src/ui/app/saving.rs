@@ -187,6 +187,7 @@ impl Viewer {
             around: self.state.mesh_points(true),
             meshes,
             figures: dimensions::figures(&self.state),
+            told: self.state.told(),
         }
     }
 

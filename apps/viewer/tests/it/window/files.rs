@@ -112,6 +112,7 @@ fn meshes_and_pictures_are_saved() {
         samples: 4,
         transparent: true,
         replace: false,
+        recipe: true,
     };
     run(&mut window, Command::SavePicture(picture.clone()));
     assert!(is_png(&at("p.png")) && state(&mut window).messages.problems.is_empty());
