@@ -47,6 +47,7 @@ functions = {
     "read_mesh": lambda: nt.read_mesh(mesh_path),
     "check": lambda: nt.check(mesh),
     "html": lambda: nt.html([cell, cell]),
+    "ids": lambda: nt.ids(cell, **SMALL),
     "Morphology.measures": lambda: cell.measures(),
     "Morphology.to_table": lambda: cell.to_table(),
     "Morphology.save": lambda: cell.save(os.path.join(work, "again.swc"), overwrite=True),

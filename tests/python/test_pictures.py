@@ -231,6 +231,24 @@ def test_options_in_groups_are_those_outside(cell: nt.Morphology) -> None:
         nt.render(cell, markers={"shape": "cube"}, **SMALL)  # type: ignore[typeddict-item]
 
 
+def test_ids_are_what_is_at_each_pixel(cell: nt.Morphology) -> None:
+    look = {"size": (240, 160), "view": "iso", "least_width": 0, "samples": 1}
+    seen = nt.ids([cell, nt.synth("granule", points=80)], **look)
+    assert {seen.cell.shape, seen.section.shape, seen.sample.shape} == {(160, 240)}
+    assert set(np.unique(seen.cell)) == {-1, 0, 1}
+    assert ((seen.section < 0) == (seen.cell < 0)).all()
+    # The same pixels show, and a section has one color there.
+    drawn = nt.render(cell, color_by="section", light="flat", ao=0, legend=False, transparent=True, **look)
+    pixels, alone = np.asarray(drawn), nt.ids(cell, **look)
+    assert ((pixels[..., 3] > 0) == (alone.cell == 0)).all()
+    for section in np.unique(alone.section[alone.section > 0]):
+        of_section = alone.section == section
+        samples = set(alone.sample[of_section].tolist())
+        assert samples <= set(cell.samples[cell.sections[section - 1].indices].tolist())
+    with pytest.raises(TypeError, match="did you mean 'color_by'"):
+        nt.ids(cell, colour_by="type")
+
+
 def test_types_of_options_are_those_of_the_functions() -> None:
     import inspect
 
@@ -442,7 +460,7 @@ def test_what_was_in_memory_is_not_in_a_picture_and_is_told(cell: nt.Morphology,
     small: dict[str, Any] = {"size": (60, 40), "samples": 1, "legend": False}
     numbers = np.arange(len(cell), dtype=np.float32)
     nt.render(cell, values=numbers, meshes=[nt.mesh(cell, level=1)], **small).save(tmp_path / "own.png")
-    with pytest.warns(nt.NeurotessWarning, match="own.png: was drawn with values, meshes in memory"):
+    with pytest.warns(nt.NeurotessWarning, match="own.png: was drawn with values in memory, meshes in memory"):
         again = nt.render(cell, like=tmp_path / "own.png")
     assert np.array_equal(np.asarray(again), np.asarray(nt.render(cell, **small)))
     # A given side goes before the eye of the picture; switches of NumPy are switches.

@@ -14,8 +14,8 @@ use neurotess::drawing::{self, Device, DrawError, DrawingInput, OwnData, Picked,
 use neurotess::mesh::SurfaceMesh;
 use neurotess::picture::color::{ColorMap, Rgb};
 use neurotess::picture::{Camera, Image, Lens, PngWriter};
-use numpy::ndarray::Array3;
-use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::ndarray::{Array2, Array3};
+use numpy::{Element, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -25,7 +25,7 @@ use crate::errors;
 use crate::errors::bug;
 use crate::options::draw_options;
 use crate::surface::Surface;
-use crate::work::{Stop, detached, is_forked, released, stoppable};
+use crate::work::{Stop, detached, is_forked, stoppable};
 
 /// Adds what draws to the module.
 pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -277,7 +277,8 @@ impl Drawing {
 
     /// Draws one of the pictures that the options ask for.
     fn draw(&self, py: Python<'_>, picture: usize) -> PyResult<Py<PyArray3<u8>>> {
-        self.with(py, move |drawing, stopped| drawing.draw(picture, stopped))
+        let image = self.with(py, move |drawing, stopped| drawing.draw(picture, stopped))?;
+        pixels_of(py, image)
     }
 
     /// Draws from anywhere, with the colors of one of the pictures.
@@ -290,9 +291,10 @@ impl Drawing {
         samples: u32,
     ) -> PyResult<Py<PyArray3<u8>>> {
         let camera = camera(view)?;
-        self.with(py, move |drawing, stopped| {
+        let image = self.with(py, move |drawing, stopped| {
             drawing.draw_from(picture, camera, (size, samples), stopped)
-        })
+        })?;
+        pixels_of(py, image)
     }
 
     /// How a picture is made, as PNG files tell it.
@@ -325,14 +327,22 @@ impl Drawing {
         reach: f64,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let camera = camera(view)?;
-        self.usable(py)?;
-        let shared = Arc::clone(&self.shared);
-        let picked = released(py, None, move || {
-            let shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
-            let drawing = shared.as_ref()?;
-            drawing.pick(&camera, size, at, reach)
+        let picked = self.with(py, move |drawing, stopped| {
+            drawing.pick(&camera, size, at, reach, stopped)
         })?;
         picked.map(|picked| picked_dict(py, picked)).transpose()
+    }
+
+    /// What is at each pixel of the first picture: cells, sections, samples.
+    fn ids<'py>(&self, py: Python<'py>) -> PyResult<Ids<'py>> {
+        let ids = self.with(py, |drawing, stopped| drawing.ids(0, stopped))?;
+        let shape = ids.size.map(|side| side as usize);
+        let shape = (shape[1], shape[0]);
+        Ok((
+            array_of(py, shape, ids.cell)?,
+            array_of(py, shape, ids.section)?,
+            array_of(py, shape, ids.sample)?,
+        ))
     }
 
     /// Gives back the memory on the device. Nothing can be drawn afterwards.
@@ -375,13 +385,13 @@ impl Drawing {
     }
 
     /// Draws without the interpreter's lock; one picture at a time, which Ctrl-C stops.
-    fn with(
+    fn with<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        draw: impl FnOnce(&mut drawing::Drawing, &Arc<AtomicBool>) -> Result<Image, DrawError>
+        draw: impl FnOnce(&mut drawing::Drawing, &Arc<AtomicBool>) -> Result<T, DrawError>
         + Send
         + 'static,
-    ) -> PyResult<Py<PyArray3<u8>>> {
+    ) -> PyResult<T> {
         self.usable(py)?;
         let shared = Arc::clone(&self.shared);
         let drawn = stoppable(py, None, &Stop::default(), move |stopped| {
@@ -389,11 +399,31 @@ impl Drawing {
             let drawing = shared.as_mut();
             drawing.map(|drawing| draw(drawing, stopped))
         })?;
-        let image = drawn.ok_or_else(closed)?.map_err(|e| undrawn(py, &e))?;
-        let shape = (image.height as usize, image.width as usize, 4);
-        let pixels = Array3::from_shape_vec(shape, image.pixels).map_err(bug)?;
-        Ok(PyArray3::from_owned_array(py, pixels).unbind())
+        drawn.ok_or_else(closed)?.map_err(|e| undrawn(py, &e))
     }
+}
+
+/// Cells, sections and samples by pixel.
+type Ids<'py> = (
+    Bound<'py, PyArray2<i32>>,
+    Bound<'py, PyArray2<i32>>,
+    Bound<'py, PyArray2<i64>>,
+);
+
+fn array_of<T: Element>(
+    py: Python<'_>,
+    shape: (usize, usize),
+    values: Vec<T>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let values = Array2::from_shape_vec(shape, values).map_err(bug)?;
+    Ok(PyArray2::from_owned_array(py, values))
+}
+
+/// Pixels as an array: height, width, four bytes.
+fn pixels_of(py: Python<'_>, image: Image) -> PyResult<Py<PyArray3<u8>>> {
+    let shape = (image.height as usize, image.width as usize, 4);
+    let pixels = Array3::from_shape_vec(shape, image.pixels).map_err(bug)?;
+    Ok(PyArray3::from_owned_array(py, pixels).unbind())
 }
 
 /// The colors of a color map; none if there is none of this name.

@@ -21,6 +21,7 @@ use crate::colors::{self, PictureColors};
 use crate::error::DrawError;
 use crate::film::{FilmStats, FixedFilm};
 use crate::host::Host;
+use crate::ids::KeptIds;
 use crate::job::Job;
 use crate::meshed::MeshedCell;
 use crate::options::{DrawOptions, OwnData};
@@ -42,20 +43,22 @@ pub enum DrawingInput<'a> {
 
 /// Cells to be drawn once or often.
 pub struct Drawing {
-    asked: Box<DrawOptions>,
+    pub(crate) asked: Box<DrawOptions>,
     pub(crate) cells: Vec<MeshedCell>,
     pub(crate) placements: Vec<(usize, Placement)>,
     pub(crate) instances: Option<CircuitInstances>,
     /// What the cameras of the options fit.
     spheres: Vec<BoundingSphere>,
     /// What holds everything, for near planes.
-    around: Vec<BoundingSphere>,
-    colored: PictureColors,
+    pub(crate) around: Vec<BoundingSphere>,
+    pub(crate) colored: PictureColors,
     cameras: Vec<Camera>,
     overlay: Overlay,
     painter: Painter,
     /// Of a series of times from a fixed camera: drawn with the first of its pictures.
     film: Option<FixedFilm>,
+    /// What was picked from last.
+    pub(crate) kept_ids: Option<KeptIds>,
     seconds: DrawingSeconds,
     /// Which of the meshes beside the cells were in memory.
     in_memory: Vec<bool>,
@@ -192,6 +195,7 @@ impl Drawing {
             overlay,
             painter,
             film: None,
+            kept_ids: None,
             seconds,
             in_memory,
             left_out,
@@ -392,7 +396,7 @@ impl Drawing {
     }
 }
 
-fn shown<'a>(
+pub(crate) fn shown<'a>(
     asked: &'a DrawOptions,
     cells: &'a [&'a MeshedCell],
     placements: &'a [(usize, Placement)],

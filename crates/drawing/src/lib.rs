@@ -15,6 +15,7 @@ mod drawing;
 mod error;
 mod film;
 mod host;
+mod ids;
 mod job;
 mod meshed;
 mod options;
@@ -22,7 +23,6 @@ mod overlay;
 #[cfg(feature = "pages")]
 mod page;
 mod painter;
-mod pick;
 mod png;
 mod scene;
 mod shown;
@@ -34,6 +34,7 @@ pub use drawing::{Drawing, DrawingInput, DrawingSeconds};
 pub use error::DrawError;
 pub use film::FilmStats;
 pub use host::{Host, Quiet, Work};
+pub use ids::{IdImage, Picked};
 pub use meshed::{MeshedCell, Unread};
 pub use neurotess_options::{OptionError, Picture};
 pub use options::{DrawOptions, OwnData};
@@ -43,7 +44,6 @@ pub use painter::{
     BudgetStats, Cost, Device, Open, Recolored, SourceStats, StreamStats, Take, Wanted, open,
     wanted,
 };
-pub use pick::Picked;
 pub use png::{DrawnImage, KEYWORD as PNG_KEYWORD, Recipe, begin_png, picture_of_png, recipe_of};
 pub use scene::markers::read_markers;
 pub use scene::{CircuitInstances, Scene, of_memory, read_circuit, read_files};

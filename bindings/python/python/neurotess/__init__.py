@@ -50,6 +50,7 @@ from ._circuits import Circuit
 from ._reports import Report
 from ._pages import html
 from ._pictures import Image, film, render
+from ._ids import Ids, ids
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ __all__ = [
     "Failed",
     "FolderError",
     "ForbiddenFileError",
+    "Ids",
     "Image",
     "Mesh",
     "MeshError",
@@ -95,6 +97,7 @@ __all__ = [
     "edit",
     "film",
     "html",
+    "ids",
     "mesh",
     "mesh_all",
     "mesh_many",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
         sample: int | None
         """The file's own number of the nearest sample; none on the soma."""
         position: list[float]
-        """Where its center line is there (µm)."""
+        """Where that sample was traced (µm)."""
 
     #: Eye, target, direction upwards (µm), and the vertical angle of view (radians).
     Camera = tuple[Any, Any, Any, float]
