@@ -180,7 +180,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("neurotess-viewer", &["neurotess"]),
     ("neurotess-cli", &["neurotess", "neurotess-viewer"]),
     ("neurotess-python", &["neurotess", "neurotess-cli"]),
-    ("xtask", &["neurotess"]),
+    ("xtask", &["neurotess-plot"]),
     // Tests of all crates may use it.
     ("neurotess-testing", &["neurotess-testing-macros"]),
     ("neurotess-testing-macros", &[]),

@@ -12,10 +12,10 @@ use neurotess_picture::{
 use neurotess_raster::{PictureError, Scene, StaticPicture, draw_static};
 use rayon::prelude::*;
 
+use crate::Drawing;
 use crate::drawing::shown;
 use crate::error::DrawError;
 use crate::meshed::MeshedCell;
-use crate::Drawing;
 
 /// What is at each pixel, row by row from the top left.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -11,7 +11,7 @@ impl Plot {
     pub fn csv(&self) -> String {
         let mut text = String::new();
         let lines: Vec<(&Series, &[[f64; 2]])> = self.of_kind(|data| match data {
-            Data::Line(points) => Some(points.as_slice()),
+            Data::Line(points) | Data::Dots(points) => Some(points.as_slice()),
             _ => None,
         });
         if !lines.is_empty() {

@@ -20,11 +20,14 @@
 
 mod csv;
 mod measures;
+mod panels;
+mod scale;
 mod svg;
 mod thin;
 mod ticks;
 
 pub use measures::{Measure, SHOLL_STEP, TooMany, of_measure};
+pub use panels::panels;
 pub use thin::thinned;
 pub use ticks::{digits, step, ticks};
 
@@ -60,6 +63,8 @@ pub struct Axis {
     pub label: String,
     /// The unit; empty: none.
     pub unit: String,
+    /// Whether equal ratios are equally far apart in figures; numbers of 0 and below are left out then.
+    pub logarithmic: bool,
 }
 
 /// Numbers that belong together.
@@ -79,6 +84,8 @@ pub struct Series {
 pub enum Data {
     /// A line through points, x ascending. It has a gap where y is no number.
     Line(Vec<[f64; 2]>),
+    /// Points.
+    Dots(Vec<[f64; 2]>),
     /// Bars that stand on 0.
     Bars(Vec<Bar>),
     /// Level lines.
@@ -120,8 +127,23 @@ pub struct Bar {
 impl Axis {
     /// An axis.
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        let (label, unit) = (label.into(), unit.into());
-        Self { label, unit }
+        Self {
+            label: label.into(),
+            unit: unit.into(),
+            logarithmic: false,
+        }
+    }
+
+    /// The same with equal ratios equally far apart.
+    #[must_use]
+    pub fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
+        self
+    }
+
+    /// Whether a number has a place on it.
+    fn holds(&self, n: f64) -> bool {
+        n.is_finite() && (n > 0.0 || !self.logarithmic)
     }
 
     /// What is beside it: `time (ms)`.
@@ -144,11 +166,19 @@ impl Series {
     }
 }
 
+impl Series {
+    /// A line with a dot at each of its points, whose name only the line has.
+    pub fn dotted(name: impl Into<String>, color: usize, points: Vec<[f64; 2]>) -> [Self; 2] {
+        let dots = Self::new("", color, Data::Dots(points.clone()));
+        [Self::new(name, color, Data::Line(points)), dots]
+    }
+}
+
 impl Data {
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         match self {
-            Self::Line(points) => points.is_empty(),
+            Self::Line(points) | Self::Dots(points) => points.is_empty(),
             Self::Bars(bars) => bars.is_empty(),
             Self::Spans(spans) => spans.is_empty(),
             Self::Ticks { x, .. } => x.is_empty(),
@@ -157,7 +187,9 @@ impl Data {
 
     fn for_each_point(&self, mut of: impl FnMut([f64; 2])) {
         match self {
-            Self::Line(points) => points.iter().for_each(|&point| of(point)),
+            Self::Line(points) | Self::Dots(points) => {
+                points.iter().for_each(|&point| of(point));
+            }
             Self::Bars(bars) => bars.iter().for_each(|bar| {
                 of([bar.from, 0.0]);
                 of([bar.to, bar.height]);
@@ -185,7 +217,7 @@ impl Plot {
         let mut bounds = [[f64::MAX, f64::MIN]; 2];
         for series in &self.series {
             series.data.for_each_point(|point| {
-                if point.iter().all(|n| n.is_finite()) {
+                if self.x.holds(point[0]) && self.y.holds(point[1]) {
                     for (bound, n) in bounds.iter_mut().zip(point) {
                         *bound = [bound[0].min(n), bound[1].max(n)];
                     }

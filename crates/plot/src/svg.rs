@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::{Data, Plot, Series, TICK, digits, step, thinned, ticks};
+use crate::scale::Scale;
+use crate::{Data, Plot, Series, TICK, panels, thinned};
 
 /// Room (pixels) around the plot: above, right, below, left.
 const MARGIN: [f64; 4] = [14.0, 16.0, 46.0, 64.0];
@@ -18,36 +19,31 @@ const NAMED: usize = 24;
 struct Frame {
     /// Left, top, right, bottom (pixels).
     rect: [f64; 4],
-    /// Least and greatest x and y.
-    bounds: [[f64; 2]; 2],
+    scales: [Scale; 2],
 }
 
 impl Frame {
     fn x(&self, x: f64) -> f64 {
         let [left, _, right, _] = self.rect;
-        let [low, high] = self.bounds[0];
-        left + (x - low) / (high - low) * (right - left)
+        left + self.scales[0].share(x) * (right - left)
     }
 
     fn y(&self, y: f64) -> f64 {
         let [_, top, _, bottom] = self.rect;
-        let [low, high] = self.bounds[1];
-        bottom - (y - low) / (high - low) * (bottom - top)
+        bottom - self.scales[1].share(y) * (bottom - top)
     }
 }
 
 impl Plot {
     /// A picture of this size (pixels). Lines of more points than it can show are drawn by the greatest and least values
     /// of each pixel: [`Plot::csv`] has all of them.
-    pub fn svg(&self, [width, height]: [u32; 2]) -> String {
-        let [width, height] = [width, height].map(|n| f64::from(n.max(80)));
+    pub fn svg(&self, size: [u32; 2]) -> String {
+        panels(std::slice::from_ref(self), 1, size)
+    }
+
+    /// What is within a picture of this size (pixels).
+    pub(crate) fn svg_content(&self, [width, height]: [f64; 2]) -> String {
         let mut text = String::new();
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-             font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
-        );
         let named = self.named();
         let legend = match named.is_empty() {
             true => 0.0,
@@ -69,7 +65,7 @@ impl Plot {
         ];
         let frame = Frame {
             rect,
-            bounds: self.rounded_bounds(),
+            scales: self.scales(),
         };
         if title > 0.0 {
             let middle = (rect[0] + rect[2]) / 2.0;
@@ -80,14 +76,8 @@ impl Plot {
             );
         }
         self.axes(&frame, &mut text);
-        let [left, top, right, bottom] = rect;
-        let _ = writeln!(
-            text,
-            "<clipPath id=\"plot\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>\n\
-             <g clip-path=\"url(#plot)\" fill=\"none\" stroke-width=\"1.5\" stroke-linejoin=\"round\">",
-            right - left,
-            bottom - top
-        );
+        let [_, top, right, _] = rect;
+        text.push_str("<g fill=\"none\" stroke-width=\"1.5\" stroke-linejoin=\"round\">\n");
         for series in &self.series {
             drawn(series, &frame, &mut text);
         }
@@ -106,7 +96,6 @@ impl Plot {
                 y + 4.0
             );
         }
-        text.push_str("</svg>\n");
         text
     }
 
@@ -120,55 +109,35 @@ impl Plot {
         }
     }
 
-    /// Bounds that are never empty, with y up to the next tick.
-    fn rounded_bounds(&self) -> [[f64; 2]; 2] {
-        let [x, y] = self.bounds().unwrap_or([[0.0, 1.0]; 2]);
-        let opened = |[low, high]: [f64; 2]| match low < high {
-            true => [low, high],
-            false => [low - 0.5, high + 0.5],
-        };
-        let (x, [low, high]) = (opened(x), opened(y));
-        let step = step(high - low, 6);
+    fn scales(&self) -> [Scale; 2] {
+        let [x, y] = self.bounds().unwrap_or([[1.0, 2.0]; 2]);
         [
-            x,
-            [(low / step).floor() * step, (high / step).ceil() * step],
+            Scale::new(x, self.x.logarithmic, None),
+            Scale::new(y, self.y.logarithmic, Some(6)),
         ]
     }
 
     fn axes(&self, frame: &Frame, text: &mut String) {
         let [left, top, right, bottom] = frame.rect;
-        let label = |n: f64, step: f64| {
-            let text = format!("{n:.*}", digits(step));
-            // A multiple of a step may be a negative zero.
-            if text == "-0" { "0".to_owned() } else { text }
-        };
         let wide = (((right - left) / 70.0) as usize).max(2);
-        for x in ticks(frame.bounds[0], wide) {
-            let (at, step) = (
-                frame.x(x),
-                step(frame.bounds[0][1] - frame.bounds[0][0], wide),
-            );
+        for (x, label) in frame.scales[0].ticks(wide) {
+            let at = frame.x(x);
             let _ = writeln!(
                 text,
                 "<path d=\"M{at:.1} {top:.1}V{bottom:.1}\" stroke=\"#e4e4e4\"/>\
-                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                bottom + 16.0,
-                label(x, step)
+                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+                bottom + 16.0
             );
         }
         let high = (((bottom - top) / 40.0) as usize).clamp(2, 8);
-        for y in ticks(frame.bounds[1], high) {
-            let (at, step) = (
-                frame.y(y),
-                step(frame.bounds[1][1] - frame.bounds[1][0], high),
-            );
+        for (y, label) in frame.scales[1].ticks(high) {
+            let at = frame.y(y);
             let _ = writeln!(
                 text,
                 "<path d=\"M{left:.1} {at:.1}H{right:.1}\" stroke=\"#e4e4e4\"/>\
-                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
                 left - 6.0,
-                at + 4.0,
-                label(y, step)
+                at + 4.0
             );
         }
         let (middle, half) = ((left + right) / 2.0, (top + bottom) / 2.0);
@@ -189,19 +158,29 @@ fn drawn(series: &Series, frame: &Frame, text: &mut String) {
     match &series.data {
         Data::Line(points) => {
             let pixels = (frame.rect[2] - frame.rect[0]).max(1.0) as usize;
-            let points = thinned(points, frame.bounds[0], 2 * pixels);
+            let points = thinned(points, frame.scales[0].bounds(), 2 * pixels);
             let mut path = String::new();
             let mut goes_on = false;
             for [x, y] in points {
-                if !y.is_finite() {
+                let (x, y) = (frame.x(x), frame.y(y));
+                if !(x.is_finite() && y.is_finite()) {
                     goes_on = false;
                     continue;
                 }
                 let sign = if goes_on { 'L' } else { 'M' };
-                let _ = write!(path, "{sign}{:.2} {:.2}", frame.x(x), frame.y(y));
+                let _ = write!(path, "{sign}{x:.2} {y:.2}");
                 goes_on = true;
             }
             let _ = writeln!(text, "<path d=\"{path}\" stroke=\"{color}\"/>");
+        }
+        Data::Dots(points) => {
+            let places = points.iter().map(|&[x, y]| [frame.x(x), frame.y(y)]);
+            for [x, y] in places.filter(|at| at.iter().all(|n| n.is_finite())) {
+                let _ = writeln!(
+                    text,
+                    "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{color}\"/>"
+                );
+            }
         }
         Data::Bars(bars) => {
             let floor = frame.y(0.0);

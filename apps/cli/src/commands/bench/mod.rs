@@ -120,7 +120,7 @@ fn refinement(args: &RefinementArgs, reporter: &Reporter) -> anyhow::Result<()> 
     if let Some(folder) = &args.out {
         let text = serde_json::to_string_pretty(&document)?;
         write(&folder.join(JSON), &text, args)?;
-        write(&folder.join(SVG), &plot::svg(&document.rows)?, args)?;
+        write(&folder.join(SVG), &plot::svg(&document.rows), args)?;
         reporter.result(&format!("\n{JSON} and {SVG} are in {}", folder.display()));
     }
     reporter.document(&document)
