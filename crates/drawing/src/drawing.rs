@@ -1,36 +1,37 @@
 //! Pictures of cells and circuits: a scene, with all that is needed to draw it once or often.
 
+mod ids;
+mod pictures;
+
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use neurotess_circuit::NodeRef;
 use neurotess_color::{ClosestColors, MarkerSet};
 use neurotess_morphology::Morphology;
 use neurotess_options::groups::CellSelection;
-use neurotess_options::words::{Point, Size, Time, ViewSide};
+use neurotess_options::words::{Point, Time, ViewSide};
 use neurotess_picture::overlay::Overlay;
-use neurotess_picture::{
-    BoundingSphere, Camera, Image, PictureOptions, Placement, Viewpoint, Watch,
-};
-use neurotess_recipe::memory;
+use neurotess_picture::{BoundingSphere, Camera, Placement, Viewpoint};
 
 use crate::cameras;
 use crate::colors::{self, PictureColors};
 use crate::error::DrawError;
 use crate::film::{FilmStats, FixedFilm};
 use crate::host::Host;
-use crate::ids::KeptIds;
 use crate::job::Job;
 use crate::meshed::MeshedCell;
 use crate::options::{DrawOptions, OwnData};
 use crate::overlay::{overlay, tell_lowered};
-use crate::painter::{Cost, Open, Painter, SourceStats, Take};
+use crate::painter::{Open, Painter, SourceStats};
 use crate::png::recipe_of;
 use crate::scene::meshes::SceneMeshes;
 use crate::scene::{CircuitInstances, Scene, bounds, of_memory, read_circuit};
 use crate::shown::Shown;
+
+use ids::KeptIds;
+pub use ids::{IdImage, Picked};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -43,22 +44,22 @@ pub enum DrawingInput<'a> {
 
 /// Cells to be drawn once or often.
 pub struct Drawing {
-    pub(crate) asked: Box<DrawOptions>,
+    asked: Box<DrawOptions>,
     pub(crate) cells: Vec<MeshedCell>,
     pub(crate) placements: Vec<(usize, Placement)>,
     pub(crate) instances: Option<CircuitInstances>,
     /// What the cameras of the options fit.
     spheres: Vec<BoundingSphere>,
     /// What holds everything, for near planes.
-    pub(crate) around: Vec<BoundingSphere>,
-    pub(crate) colored: PictureColors,
+    around: Vec<BoundingSphere>,
+    colored: PictureColors,
     cameras: Vec<Camera>,
     overlay: Overlay,
     painter: Painter,
     /// Of a series of times from a fixed camera: drawn with the first of its pictures.
     film: Option<FixedFilm>,
     /// What was picked from last.
-    pub(crate) kept_ids: Option<KeptIds>,
+    kept_ids: Option<KeptIds>,
     seconds: DrawingSeconds,
     /// Which of the meshes beside the cells were in memory.
     in_memory: Vec<bool>,
@@ -275,113 +276,6 @@ impl Drawing {
         self.cameras.get(picture).copied()
     }
 
-    /// Draws one of the pictures, with legend and scale bar. Ends soon after another thread sets `stopped`.
-    ///
-    /// # Errors
-    /// The device or a report fails, or the picture was stopped.
-    pub fn draw(&mut self, picture: usize, stopped: &Arc<AtomicBool>) -> Result<Image, DrawError> {
-        self.stoppable(stopped, |drawing| {
-            let mut whole = Whole::new(drawing.asked.picture.look.size.0)?;
-            drawing.paint(picture, &mut |_, band| whole.take(&band))?;
-            Ok(whole.image)
-        })
-    }
-
-    /// Draws one of the pictures, with legend and scale bar; `take` gets its bands from the top.
-    ///
-    /// # Errors
-    /// The device or a report fails, or `take` does.
-    pub fn paint(&mut self, picture: usize, take: Take<'_>) -> Result<Cost, DrawError> {
-        let Some(camera) = self.camera(picture) else {
-            return Err(DrawError::Failed("there is no such picture".into()));
-        };
-        let options = self.asked.picture.drawn(self.colored.least_width());
-        if self.film.is_none() {
-            let cells: Vec<&MeshedCell> = self.cells.iter().collect();
-            let shown = shown(&self.asked, &cells, &self.placements, &self.colored);
-            let cameras = (&self.cameras[..], &self.around[..]);
-            self.film = FixedFilm::new(&mut self.painter, &shown, cameras, &options)?;
-        }
-        let Some(film) = &mut self.film else {
-            return self.paint_from(picture, camera, &options, take);
-        };
-        let (mut image, cost) = film.picture(&self.colored, picture)?;
-        let legend = self.colored.legend(picture);
-        let legend = (!self.asked.picture.look.no_legend).then_some(&legend);
-        self.overlay.again(legend, &camera).lay_on(0, &mut image);
-        take(0, image)?;
-        Ok(cost)
-    }
-
-    /// Draws from anywhere, at another size and number of samples, with the colors of one of the pictures. Ends
-    /// soon after another thread sets `stopped`.
-    ///
-    /// # Errors
-    /// The device or a report fails, or the picture was stopped.
-    pub fn draw_from(
-        &mut self,
-        picture: usize,
-        camera: Camera,
-        (size, samples): ([u32; 2], u32),
-        stopped: &Arc<AtomicBool>,
-    ) -> Result<Image, DrawError> {
-        if self.asked.picture.look.size.0 != size {
-            self.asked.picture.look.size = Size(size);
-            self.film = None;
-            self.colored.set_widths(&self.asked);
-            let first = vec![camera];
-            (self.overlay, _) = overlay(&self.asked, &self.colored, first, &self.spheres);
-        }
-        let options = PictureOptions {
-            samples,
-            ..self.asked.picture.drawn(self.colored.least_width())
-        };
-        self.stoppable(stopped, |drawing| {
-            let mut whole = Whole::new(size)?;
-            drawing.paint_from(picture, camera, &options, &mut |_, band| whole.take(&band))?;
-            Ok(whole.image)
-        })
-    }
-
-    /// Draws with a renderer that another thread can stop.
-    fn stoppable(
-        &mut self,
-        stopped: &Arc<AtomicBool>,
-        draw: impl FnOnce(&mut Self) -> Result<Image, DrawError>,
-    ) -> Result<Image, DrawError> {
-        self.painter.set_watch(Watch {
-            stopped: Arc::clone(stopped),
-            ..Watch::default()
-        });
-        let drawn = draw(self);
-        if drawn.is_err() {
-            // What was stopped in the middle of a tile has its buffers in use still.
-            self.painter.recover();
-        }
-        drawn
-    }
-
-    fn paint_from(
-        &mut self,
-        picture: usize,
-        camera: Camera,
-        options: &PictureOptions,
-        take: Take<'_>,
-    ) -> Result<Cost, DrawError> {
-        let (table, legend) = self.colored.picture(picture)?;
-        let legend = (!self.asked.picture.look.no_legend).then_some(&legend);
-        let overlay = self.overlay.again(legend, &camera);
-        let mut lay = |top: u32, mut band: Image| {
-            overlay.lay_on(top, &mut band);
-            take(top, band)
-        };
-        let near = camera.near(&self.around);
-        let view = Viewpoint { camera, near };
-        let cells: Vec<&MeshedCell> = self.cells.iter().collect();
-        let shown = shown(&self.asked, &cells, &self.placements, &self.colored);
-        self.painter.draw(&shown, &view, &table, options, &mut lay)
-    }
-
     /// What a picture draws.
     ///
     /// # Errors
@@ -396,7 +290,7 @@ impl Drawing {
     }
 }
 
-pub(crate) fn shown<'a>(
+fn shown<'a>(
     asked: &'a DrawOptions,
     cells: &'a [&'a MeshedCell],
     placements: &'a [(usize, Placement)],
@@ -407,31 +301,6 @@ pub(crate) fn shown<'a>(
         cells,
         placements,
         colored,
-    }
-}
-
-/// A picture that grows band by band.
-struct Whole {
-    image: Image,
-}
-
-impl Whole {
-    fn new([width, height]: [u32; 2]) -> Result<Self, DrawError> {
-        let pixels = memory::reserved(4 * width as usize * height as usize);
-        let pixels =
-            pixels.map_err(|e| DrawError::Memory(format!("{e}: choose a smaller size=")))?;
-        Ok(Self {
-            image: Image {
-                width,
-                height,
-                pixels,
-            },
-        })
-    }
-
-    fn take(&mut self, band: &Image) -> Result<(), DrawError> {
-        self.image.pixels.extend_from_slice(&band.pixels);
-        Ok(())
     }
 }
 

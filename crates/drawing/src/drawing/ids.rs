@@ -12,8 +12,7 @@ use neurotess_picture::{
 use neurotess_raster::{PictureError, Scene, StaticPicture, draw_static};
 use rayon::prelude::*;
 
-use crate::Drawing;
-use crate::drawing::shown;
+use super::{Drawing, shown};
 use crate::error::DrawError;
 use crate::meshed::MeshedCell;
 
@@ -48,7 +47,7 @@ pub struct Picked {
 }
 
 /// A picture of tracing points that is kept for the next question.
-pub(crate) struct KeptIds {
+pub(super) struct KeptIds {
     camera: Camera,
     size: [u32; 2],
     picture: StaticPicture,
