@@ -9,6 +9,7 @@ use anyhow::bail;
 use crate::metadata::Package;
 use crate::modules::{self, Imports, Module};
 use crate::named_files;
+use crate::python_modules;
 use crate::steps::root;
 
 /// A crate and the crates of ours that it may depend on (tests aside).
@@ -216,6 +217,9 @@ fn check_crates(packages: &[Package]) -> anyhow::Result<String> {
     Ok(format!("{} crates know only what they may", ours.len()))
 }
 
+/// The modules of the Python package.
+const PYTHON: &str = "bindings/python/python/neurotess";
+
 fn check_files() -> anyhow::Result<String> {
     let (mut count, mut faults) = (0, Vec::new());
     for group in ["crates", "apps", "bindings", "."] {
@@ -231,6 +235,10 @@ fn check_files() -> anyhow::Result<String> {
             faults.extend(circles.map(|circle| format!("{}: {circle}", of_crate.display())));
         }
     }
+    let python = python_modules::read(&root().join(PYTHON))?;
+    count += python.len();
+    let circles = circles(&python).into_iter();
+    faults.extend(circles.map(|circle| format!("Python: {circle}")));
     if !faults.is_empty() {
         bail!("imports go in circles:\n   {}", faults.join("\n   "));
     }

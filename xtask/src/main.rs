@@ -23,6 +23,7 @@ mod packages;
 mod pictures;
 mod programs;
 mod python;
+mod python_modules;
 mod quality;
 mod scenery;
 mod setup;
