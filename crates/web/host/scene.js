@@ -30,10 +30,14 @@ const NO_SECTION = 0xffff;
 /** Fields of `Base` that are counts, not places. */
 const COUNTS = [1, 7];
 
+/** Colors of a text: see schemes.rs. @param {string} text @returns {number[][]} */
+const unhex = (text) => (text.match(/.{6}/g) ?? []).map((color) => [0, 2, 4].map((at) => parseInt(color.slice(at, at + 2), 16)));
+
 export class Scene {
   /** @param {any} data @param {ArrayBuffer} bytes @param {number} first @param {Record<string, number>} numbers */
   constructor(data, bytes, first, numbers) {
     this.data = data;
+    for (const one of [...data.palettes, ...data.color_maps]) for (const list of ['types', 'distinct', 'colors']) if (one[list]?.match) one[list] = unhex(one[list]);
     this.numbers = numbers;
     this.arrays = new Arrays(bytes, first);
     /** @type {any[]} */
@@ -87,22 +91,19 @@ export class Scene {
     for (const part of this.parts) part.firstExplicit += slots;
   }
 
-  /** Reads what points are, and finds their centers in the packed mesh. Twin of template.wgsl. */
+  /** Reads what points are, and finds their centers and radii in the packed mesh. Twin of template.wgsl. */
   readPoints() {
     this.cells.forEach((cell, index) => {
       const first = cell.first_key;
       this.section.set(this.arrays.u16s(cell.section), first);
-      const distance = this.arrays.u16s(cell.distance), radius = this.arrays.u16s(cell.radius);
-      for (let k = 0; k < cell.keys; k++) {
-        this.distance[first + k] = distance[k] / 65535 * cell.distance_most;
-        this.radius[first + k] = radius[k] / 65535 * cell.radius_most;
-      }
+      this.distance.set(Float32Array.from(this.arrays.u16s(cell.distance), (share) => share / 65535 * cell.distance_most), first);
       this.cellOf.fill(index, first, first + cell.keys);
       cell.parents = this.arrays.u16s(cell.parents);
       cell.ends = Float32Array.from(this.arrays.u16s(cell.ends), (end) => end / 65535 * cell.distance_most);
     });
     const { packed } = this, floats = new Float32Array(packed.buffer);
     const named = (/** @type {number} */ key) => (key & 0x7fffffff) >>> 0;
+    const bits = new Uint32Array(1), float = new Float32Array(bits.buffer);
     for (const part of this.parts) {
       const [points, pointCount, spheres, , anchors, shaped, , , , , keys] = part.base;
       for (let point = 0; point < pointCount; point++) {
@@ -112,17 +113,20 @@ export class Scene {
         const sphere = spheres + this.numbers.SPHERE_U32S * Math.floor(point / this.numbers.POINTS_OF_SPHERE);
         const radius = floats[sphere + 3], step = 2 * radius / this.numbers.POSITION_STEPS;
         const steps = [x & 0xfffff, (x >>> 20) | ((y & 0xff) << 12), (y >>> 8) & 0xfffff];
-        this.setCenter(part.cell, named(packed[keys + (w >>> 22)]), steps.map((n, k) => floats[sphere + k] + n * step - radius));
+        bits[0] = ((z & 0xffff) + this.numbers.RADIUS_BASE) << 12;
+        this.setPoint(part.cell, named(packed[keys + (w >>> 22)]), steps.map((n, k) => floats[sphere + k] + n * step - radius), float[0]);
       }
       for (let at = anchors; at < shaped; at += 8) {
-        this.setCenter(part.cell, named(packed[at + 7]), [floats[at], floats[at + 1], floats[at + 2]]);
+        this.setPoint(part.cell, named(packed[at + 7]), [floats[at], floats[at + 1], floats[at + 2]], floats[at + 4]);
       }
     }
   }
 
-  /** @param {number} cell @param {number} key @param {number[]} center */
-  setCenter(cell, key, center) {
+  /** @param {number} cell @param {number} key @param {number[]} center @param {number} radius */
+  setPoint(cell, key, center, radius) {
     this.centers.set(this.inWorld(cell, /** @type {any} */ (center)), 3 * key);
+    // Somata have none.
+    if (this.section[key] !== NO_SECTION) this.radius[key] = radius / this.cells[cell].radius_factor;
   }
 
   /** @param {number} cell @param {import('./vectors.js').Vector} p @returns {import('./vectors.js').Vector} */

@@ -36,9 +36,8 @@ pub(crate) struct CellData {
     /// Distance from the beginning of its neurite, as a share of `distance_most` (µm).
     distance: ArrayRef,
     distance_most: f32,
-    /// Radius, as a share of `radius_most` (µm).
-    radius: ArrayRef,
-    radius_most: f32,
+    /// Factor on the radii of the packed mesh.
+    radius_factor: f64,
     /// Of each section: 1 + its parent, or 0.
     parents: ArrayRef,
     /// Of each section: distance of its end, as `distance`.
@@ -91,14 +90,8 @@ impl CellData {
             .iter()
             .map(|&end| end as f32)
             .collect();
-        let radii = tracing.iter().map(|point| match point.role {
-            Role::Soma => 0.0,
-            _ => (f64::from(point.radius) / cell.radius_factor) as f32,
-        });
-        let radii: Vec<f32> = radii.collect();
         let most = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
         let distance_most = most(&distances).max(most(&ends));
-        let radius_most = most(&radii);
         let shares = |values: &[f32], most: f32| -> Vec<u16> {
             values.iter().map(|&value| share(value, most)).collect()
         };
@@ -115,8 +108,7 @@ impl CellData {
             section: arrays.u16s(&sections),
             distance: arrays.u16s(&shares(&distances, distance_most)),
             distance_most,
-            radius: arrays.u16s(&shares(&radii, radius_most)),
-            radius_most,
+            radius_factor: cell.radius_factor,
             parents: arrays.u16s(&parents.collect::<Vec<_>>()),
             ends: arrays.u16s(&shares(&ends, distance_most)),
         }

@@ -102,14 +102,14 @@ pub(crate) fn small_key(key: u32) -> u16 {
     }
 }
 
-/// The colors of a palette.
+/// The colors of a palette; lists of them are text, as [`hex`] writes it.
 #[derive(Debug, Serialize)]
 pub(crate) struct PaletteData {
     name: &'static str,
     /// Of SWC types from 0 on, the last eight for all others in turn.
-    types: Vec<Rgb>,
+    types: String,
     soma_on_dark: Rgb,
-    distinct: Vec<Rgb>,
+    distinct: String,
 }
 
 /// Number of types with colors of their own.
@@ -124,20 +124,26 @@ pub(crate) fn palettes() -> Vec<PaletteData> {
                 NeuriteKind::SOMA => palette.of_soma(None),
                 _ => palette.of_type(kind),
             })
+            .map(hex)
             .collect(),
         soma_on_dark: palette.of_soma(Some([0; 3])),
         distinct: (0..palette.distinct_count())
-            .map(|k| palette.distinct(k))
+            .map(|k| hex(palette.distinct(k)))
             .collect(),
     };
     Palette::ALL.map(data).into()
+}
+
+/// A color as six letters: a third of what it takes as numbers. Read by `Scene` in scene.js.
+fn hex([red, green, blue]: Rgb) -> String {
+    format!("{red:02x}{green:02x}{blue:02x}")
 }
 
 /// A color map, between whose colors others are mixed.
 #[derive(Debug, Serialize)]
 pub(crate) struct ColorMapData {
     name: &'static str,
-    colors: Vec<Rgb>,
+    colors: String,
 }
 
 /// All color maps, every eighth color.
@@ -147,7 +153,7 @@ pub(crate) fn color_maps() -> Vec<ColorMapData> {
         colors: {
             let scale = map.scale();
             let last = scale.len() - 1;
-            (0..=32).map(|k| scale[k * last / 32]).collect()
+            (0..=32).map(|k| hex(scale[k * last / 32])).collect()
         },
     };
     ColorMap::ALL.map(data).into()
