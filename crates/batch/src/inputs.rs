@@ -73,6 +73,8 @@ impl Search<'_> {
     fn argument(&mut self, argument: &Path) {
         if is_standard(argument) {
             self.add(argument.to_path_buf(), PathBuf::from("stdin"));
+        } else if self.skeletons(argument) {
+            // All of a folder of neuroglancer's.
         } else if argument.is_dir() {
             if self.folder(argument, argument) == 0 {
                 let known = self.extensions.join(", .");
@@ -94,6 +96,35 @@ impl Search<'_> {
         } else {
             self.pattern(argument);
         }
+    }
+
+    /// Adds the skeletons of neuroglancer's precomputed data, if it is a folder of them.
+    #[cfg(feature = "json")]
+    fn skeletons(&mut self, folder: &Path) -> bool {
+        let all = match formats::precomputed::Skeletons::open(folder) {
+            Ok(Some(skeletons)) => skeletons.ids().map(|ids| (skeletons, ids)),
+            Ok(None) => return false,
+            Err(e) => Err(e),
+        };
+        match all {
+            Ok((skeletons, ids)) => {
+                for id in ids {
+                    let name = id.to_string();
+                    self.add(skeletons.folder().join(&name), PathBuf::from(name));
+                }
+            }
+            Err(e) => self.found.not_found.push(NotFound {
+                path: e.file.clone().into(),
+                what: e.fault.to_string(),
+            }),
+        }
+        true
+    }
+
+    /// This build reads none.
+    #[cfg(not(feature = "json"))]
+    fn skeletons(&mut self, _folder: &Path) -> bool {
+        false
     }
 
     /// Adds what is below a folder; returns how many files there are.

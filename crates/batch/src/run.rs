@@ -75,7 +75,7 @@ impl Plan {
 
 /// Bytes of a file; 0 if there is none.
 fn size(path: &Path) -> u64 {
-    fs::metadata(formats::member(path).0).map_or(0, |data| data.len())
+    fs::metadata(formats::file_of(path)).map_or(0, |data| data.len())
 }
 
 /// A plan while it is followed.

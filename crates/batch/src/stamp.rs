@@ -25,9 +25,9 @@ impl Stamp {
 
     /// Of each file that an output is made of, in the order of the job; none if one is missing.
     pub(crate) fn of_inputs(job: &Job) -> Option<Vec<Self>> {
-        let first = formats::member(&job.input).0;
+        let first = formats::file_of(&job.input);
         let further = job.further.iter().map(PathBuf::as_path);
-        std::iter::once(first)
+        std::iter::once(&*first)
             .chain(further)
             .map(Self::of)
             .collect()

@@ -73,7 +73,7 @@ pub fn readable(path: &Path) -> Result<(), InputError> {
     if is_standard(path) {
         return Ok(());
     }
-    let read = formats::regular(formats::member(path).0);
+    let read = formats::regular(&formats::file_of(path));
     read.map_err(|source| InputError::Unreadable {
         file: path.to_path_buf(),
         source,

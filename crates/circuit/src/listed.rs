@@ -41,7 +41,7 @@ pub(crate) fn circuit(
         let template = cell.file.as_ref().and_then(|path| {
             *known.entry(path).or_insert_with(|| {
                 // Of a container, FILE#NAME.
-                if neurotess_formats::member(path).0.is_file() {
+                if neurotess_formats::file_of(path).is_file() {
                     templates.push(Template::new(path.clone()));
                     Some(TemplateId(templates.len() as u32 - 1))
                 } else {

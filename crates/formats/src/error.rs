@@ -390,6 +390,18 @@ pub enum Fault {
         /// Path of the first; empty if there is none.
         first: String,
     },
+    /// Skeletons of neuroglancer that are broken.
+    #[error("the precomputed skeletons are not what they should be ({reason}): export them again")]
+    Precomputed {
+        /// What is wrong.
+        reason: String,
+    },
+    /// A skeleton that no shard has.
+    #[error("no shard has skeleton {id}: check the id, and whether all shards were fetched")]
+    NoSkeleton {
+        /// Its id.
+        id: u64,
+    },
     /// Blood vessels.
     #[error("the file is a vasculature, not a neuron: vessels are graphs and cannot be read")]
     Vasculature,

@@ -50,7 +50,7 @@ const SIGNS: [(Sign, Foreign); 12] = [
         Sign::Has(b"neuroglancer_"),
         Foreign(
             "the description of skeletons or meshes of neuroglancer",
-            "export a skeleton as SWC, as by cloud-volume",
+            "give FOLDER/ID, or the folder for all of its skeletons",
         ),
     ),
     (Sign::Has(b"pt3dadd("), HOC),

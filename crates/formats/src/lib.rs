@@ -19,8 +19,8 @@
 //! ```
 //!
 //! # Features
-//! SWC is always there. `asc`, `h5`, `neuroml`, `xml` (SNT, KNOSSOS, Neurolucida XML) and `json` (MouseLight, CATMAID)
-//! add the other formats, all of them by default. A file of a format that is not built in is an error that names the
+//! SWC is always there. `asc`, `h5`, `neuroml`, `xml` (SNT, KNOSSOS, Neurolucida XML) and `json` (MouseLight, CATMAID,
+//! neuroglancer's skeletons) add the other formats, all of them by default. A file of a format that is not built in is an error that names the
 //! feature.
 #![forbid(unsafe_code)]
 
@@ -57,6 +57,8 @@ mod number;
 #[cfg(any(feature = "asc", feature = "h5"))]
 mod outlines;
 mod packed;
+#[cfg(feature = "json")]
+pub mod precomputed;
 mod recognize;
 mod regular;
 #[cfg(any(
@@ -79,6 +81,7 @@ mod write;
 #[cfg(any(feature = "neuroml", feature = "xml"))]
 mod xml;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use neurotess_morphology::Morphology;
@@ -119,13 +122,18 @@ pub struct Read {
 }
 
 /// Reads a morphology; the format is told by the name's extension, else by the content. Of a file that
-/// holds many, `FILE#NAME` is one: the path in an H5 file, the number or name of a neuron in JSON. Files packed by
+/// holds many, `FILE#NAME` is one: the path in an H5 file, the number or name of a neuron in JSON. Of neuroglancer's
+/// precomputed skeletons `FOLDER/ID` is one, in a file of its own or in shards. Files packed by
 /// gzip, as `cell.swc.gz`, are unpacked.
 ///
 /// # Errors
 /// [`ReadError`] with file and line.
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Read, ReadError> {
     let path = path.as_ref();
+    #[cfg(feature = "json")]
+    if let Some(read) = precomputed::read(path, options) {
+        return read;
+    }
     let name = path.display().to_string();
     let (file, member) = member(path);
     let extension = unpacked_name(file).extension().unwrap_or_default();
@@ -252,6 +260,15 @@ pub fn member(path: &Path) -> (&Path, Option<&str>) {
         (!member.is_empty() && file.is_file()).then_some((file, Some(member)))
     });
     parts.unwrap_or(whole)
+}
+
+/// The file on the disk that holds the morphology that a path names: that of a [`member`], or of a skeleton of neuroglancer.
+pub fn file_of(path: &Path) -> Cow<'_, Path> {
+    #[cfg(feature = "json")]
+    if let Some(file) = precomputed::file_of(path) {
+        return Cow::Owned(file);
+    }
+    Cow::Borrowed(member(path).0)
 }
 
 /// Reads a format that has lines: `interpret` gets the cell's name and collects warnings.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use neurotess::circuit::{Circuit, is_circuit, is_point_table, is_recording};
 use neurotess::formats;
+use neurotess::formats::precomputed::Skeletons;
 use neurotess::render::Placement;
 use walkdir::WalkDir;
 
@@ -105,6 +106,15 @@ pub(crate) fn find(request: &OpenRequest) -> Found {
 }
 
 fn find_folder(folder: &Path, found: &mut Found) {
+    if let Some(skeletons) = find_skeletons(folder) {
+        match skeletons {
+            Ok(files) => found.files.extend(files),
+            Err(e) => found
+                .failures
+                .push((folder.to_path_buf(), e.fault.to_string())),
+        }
+        return;
+    }
     let before = found.files.len();
     for entry in WalkDir::new(folder).follow_links(true).sort_by_file_name() {
         match entry {
@@ -127,6 +137,20 @@ fn find_folder(folder: &Path, found: &mut Found) {
         let why = format!("no tracing in this folder: it needs files named .{known}");
         found.failures.push((folder.to_path_buf(), why));
     }
+}
+
+/// The skeletons of a folder of neuroglancer's; none if it is no such folder.
+fn find_skeletons(folder: &Path) -> Option<Result<Vec<PathBuf>, formats::ReadError>> {
+    let skeletons = match Skeletons::open(folder) {
+        Ok(skeletons) => skeletons?,
+        Err(e) => return Some(Err(e)),
+    };
+    let path = |id: u64| skeletons.folder().join(id.to_string());
+    Some(
+        skeletons
+            .ids()
+            .map(|ids| ids.into_iter().map(path).collect()),
+    )
 }
 
 /// Whether a file has the extension of a tracing.

@@ -70,8 +70,10 @@ pub(crate) fn read(
 /// times as much, and exploration 10 times.
 fn check_memory(files: &[PathBuf], exploring: bool) -> Result<(), DrawError> {
     // A container has many cells.
-    let files = files.iter().map(|file| neurotess_formats::member(file).0);
-    let files: BTreeSet<&Path> = files.collect();
+    let files: BTreeSet<_> = files
+        .iter()
+        .map(|file| neurotess_formats::file_of(file))
+        .collect();
     let sizes = files
         .into_iter()
         .map(|file| std::fs::metadata(file).map_or(0, |data| data.len()));

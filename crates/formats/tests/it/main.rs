@@ -26,6 +26,7 @@ mod neurolucida_xml;
 mod neuroml;
 #[cfg(all(feature = "asc", feature = "h5"))]
 mod outlined_round_trip;
+mod precomputed;
 #[cfg(all(feature = "asc", feature = "h5", feature = "neuroml"))]
 mod reference;
 mod round_trip;
