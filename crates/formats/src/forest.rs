@@ -74,6 +74,47 @@ impl Forest {
         Ok(index)
     }
 
+    /// Gives edges a direction, away from `first` and from the first node of each further tree; edges that close loops are
+    /// left out, and told by the line of the first.
+    pub(crate) fn direct(
+        &mut self,
+        links: &[[u32; 2]],
+        first: u32,
+        line: impl Fn(usize) -> u64,
+        warnings: &mut Warnings,
+    ) {
+        let count = self.len();
+        let mut beside: Vec<Vec<(u32, usize)>> = vec![Vec::new(); count];
+        for (edge, &[a, b]) in links.iter().enumerate() {
+            beside[a as usize].push((b, edge));
+            beside[b as usize].push((a, edge));
+        }
+        let mut reached = vec![false; count];
+        let mut used = vec![false; links.len()];
+        let mut open = Vec::new();
+        for root in std::iter::once(first).chain(0..count as u32) {
+            if std::mem::replace(&mut reached[root as usize], true) {
+                continue;
+            }
+            open.push(root);
+            while let Some(node) = open.pop() {
+                for &(other, edge) in &beside[node as usize] {
+                    if !std::mem::replace(&mut reached[other as usize], true) {
+                        used[edge] = true;
+                        self.set_parent(other, node);
+                        open.push(other);
+                    }
+                }
+            }
+        }
+        let mut loops = used.iter().enumerate().filter(|(_, used)| !**used);
+        if let Some((edge, _)) = loops.next() {
+            let message = "an edge that closes a loop: left out, for trees have none";
+            let count = 1 + loops.count() as u64;
+            warnings.add_many(line(edge), "loops_left_out", message, count);
+        }
+    }
+
     /// The morphology, its oddities told to `warnings`.
     pub(crate) fn build(self, name: &str, warnings: &mut Warnings) -> Located<Morphology> {
         let Self {

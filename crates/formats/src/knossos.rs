@@ -132,12 +132,8 @@ impl Records {
             forest.push(id, kind, sample, None);
         }
         let links = self.links(&forest)?;
-        let loops = direct(&mut forest, &links);
-        if let Some((edge, count)) = loops {
-            let line = self.edges.get(edge).map_or(1, |edge| edge.line);
-            let message = "an edge that closes a loop: left out, for trees have none";
-            warnings.add_many(line, "loops_left_out", message, count);
-        }
+        let line = |edge: usize| self.edges.get(edge).map_or(1, |edge| edge.line);
+        forest.direct(&links, 0, line, warnings);
         Ok(forest)
     }
 
@@ -154,38 +150,4 @@ impl Records {
         });
         links.collect()
     }
-}
-
-/// Gives edges a direction, away from the first node of each tree. Returns the first edge that closes a loop, and how
-/// many do.
-fn direct(forest: &mut Forest, links: &[[u32; 2]]) -> Option<(usize, u64)> {
-    let count = forest.len();
-    let mut beside: Vec<Vec<(u32, usize)>> = vec![Vec::new(); count];
-    for (edge, &[a, b]) in links.iter().enumerate() {
-        beside[a as usize].push((b, edge));
-        beside[b as usize].push((a, edge));
-    }
-    let mut reached = vec![false; count];
-    let mut used = vec![false; links.len()];
-    let mut open = Vec::new();
-    for root in 0..count as u32 {
-        if reached[root as usize] {
-            continue;
-        }
-        reached[root as usize] = true;
-        open.push(root);
-        while let Some(node) = open.pop() {
-            for &(other, edge) in &beside[node as usize] {
-                if !reached[other as usize] {
-                    reached[other as usize] = true;
-                    used[edge] = true;
-                    forest.set_parent(other, node);
-                    open.push(other);
-                }
-            }
-        }
-    }
-    let mut loops = used.iter().enumerate().filter(|(_, used)| !**used);
-    let first = loops.next()?.0;
-    Some((first, 1 + loops.count() as u64))
 }

@@ -2,8 +2,6 @@
 //! direction that all programs agree on: the tree is walked from the first vertex of the first edge, and from the first
 //! one that is not reached yet.
 
-use std::collections::VecDeque;
-
 use glam::DVec3;
 use neurotess_morphology::{Morphology, NeuriteKind};
 
@@ -53,16 +51,9 @@ pub(super) fn forest(bytes: &[u8], info: &Info, warnings: &mut Warnings) -> Resu
         };
         forest.push(vertex as i64 + 1, NeuriteKind(kind), sample, None);
     }
-    let (parents, closing) = parents(&parts)?;
-    for (vertex, parent) in parents.into_iter().enumerate() {
-        if let Some(parent) = parent {
-            forest.set_parent(vertex as u32, parent);
-        }
-    }
-    if closing > 0 {
-        let told = "an edge closes a loop, which a tree has not: it is left out";
-        warnings.add_many(1, "loop_opened", told, closing);
-    }
+    let edges = parts.edges()?;
+    let first = edges.first().map_or(0, |&[root, _]| root);
+    forest.direct(&edges, first, |_| 1, warnings);
     Ok(forest)
 }
 
@@ -149,60 +140,12 @@ impl<'a> Parts<'a> {
         None
     }
 
-    fn edge(&self, edge: usize) -> Result<[u32; 2], Fault> {
-        let bytes = &self.edges[8 * edge..8 * edge + 8];
-        let ends = [0, 4].map(|at| {
-            let mut four = [0; 4];
-            four.copy_from_slice(&bytes[at..at + 4]);
-            u32::from_le_bytes(four)
-        });
+    fn edges(&self) -> Result<Vec<[u32; 2]>, Fault> {
+        let ends = self.edges.as_chunks::<4>().0.iter();
+        let ends: Vec<u32> = ends.map(|&four| u32::from_le_bytes(four)).collect();
         match ends.iter().find(|&&end| end as usize >= self.vertices) {
             Some(&end) => Err(Fault::UnknownEnd { id: i64::from(end) }),
-            None => Ok(ends),
+            None => Ok(ends.as_chunks::<2>().0.to_vec()),
         }
     }
-}
-
-/// The parent of each vertex, and how many edges close loops.
-fn parents(parts: &Parts<'_>) -> Result<(Vec<Option<u32>>, u64), Fault> {
-    let count = parts.edges.len() / 8;
-    let edges: Vec<[u32; 2]> = (0..count)
-        .map(|edge| parts.edge(edge))
-        .collect::<Result<_, _>>()?;
-    // Where the neighbors of each vertex begin in one list.
-    let mut firsts = vec![0_usize; parts.vertices + 1];
-    for end in edges.as_flattened() {
-        firsts[*end as usize + 1] += 1;
-    }
-    for vertex in 0..parts.vertices {
-        firsts[vertex + 1] += firsts[vertex];
-    }
-    let mut neighbors = vec![0_u32; 2 * count];
-    let mut next = firsts.clone();
-    for &[a, b] in &edges {
-        for (from, to) in [(a, b), (b, a)] {
-            neighbors[next[from as usize]] = to;
-            next[from as usize] += 1;
-        }
-    }
-    let mut parents = vec![None; parts.vertices];
-    let mut reached = vec![false; parts.vertices];
-    let mut used = 0;
-    let first = edges.first().map(|&[root, _]| root);
-    for root in first.into_iter().chain(0..parts.vertices as u32) {
-        if std::mem::replace(&mut reached[root as usize], true) {
-            continue;
-        }
-        let mut open = VecDeque::from([root]);
-        while let Some(vertex) = open.pop_front() {
-            for &other in &neighbors[firsts[vertex as usize]..firsts[vertex as usize + 1]] {
-                if !std::mem::replace(&mut reached[other as usize], true) {
-                    parents[other as usize] = Some(vertex);
-                    used += 1;
-                    open.push_back(other);
-                }
-            }
-        }
-    }
-    Ok((parents, count as u64 - used))
 }

@@ -116,7 +116,7 @@ fn the_transform_is_of_positions_and_loops_are_opened() {
     fs::write(&path, skeleton(&POSITIONS, &edges, &floats(&[100.; 4]))).expect("written");
     let read = read_of(&path);
     let codes: Vec<&str> = read.warnings.iter().map(|warning| warning.code).collect();
-    assert_eq!(codes, ["radius_unit", "loop_opened", "no_soma"]);
+    assert_eq!(codes, ["radius_unit", "loops_left_out", "no_soma"]);
     let cell = read.morphology;
     let place = cell.origin + cell.points[1].position.as_dvec3();
     assert!(place.distance(DVec3::new(4.1, 0.0, 0.0)) < 1e-6, "{place}");
