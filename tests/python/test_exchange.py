@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import neurotess as nt
 import numpy as np
@@ -195,3 +196,59 @@ def test_cells_of_other_packages_are_taken_as_they_are(cell: nt.Morphology) -> N
         assert all(result.ok for result in nt.mesh_many(many, level=1))
     with pytest.raises(TypeError, match="MeshNeuron of navis has no tracing"):
         nt.mesh(ours.to_navis())
+
+
+@pytest.mark.full
+def test_surfaces_of_other_packages_are_judged_and_drawn(cell: nt.Morphology) -> None:
+    trimesh, pyvista, navis = (pytest.importorskip(name) for name in ("trimesh", "pyvista", "navis"))
+    mesh = nt.mesh(cell, level=1)
+    theirs = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    drawn = []
+    for surface in (theirs, pyvista.wrap(theirs), navis.MeshNeuron(theirs)):
+        assert nt.check(surface)["volume"] == pytest.approx(mesh.volume)
+        drawn.append(np.asarray(nt.render(surface, size=(64, 48), samples=1)))
+    assert (drawn[0] == drawn[1]).all() and (drawn[0] == drawn[2]).all()
+
+
+@pytest.mark.full
+def test_cells_of_neuron_come_with_their_sections(samples: Path) -> None:
+    neuron = pytest.importorskip("neuron")
+    h = neuron.h
+    h.load_file("stdlib.hoc")
+    h.load_file("import3d.hoc")
+    ours = nt.read(samples / "pyramidal.swc")
+    reader = h.Import3d_SWC_read()
+    reader.input(str(samples / "pyramidal.swc"))
+    h.Import3d_GUI(reader, 0).instantiate(None)
+    sections = list(h.allsec())
+    cell = nt.Morphology.from_neuron(h.allsec())
+    assert len(cell) == len(ours) and len(cell.sections) == len(ours.sections)
+    assert sum(s.length for s in cell.sections) == pytest.approx(sum(s.length for s in ours.sections))
+    assert nt.mesh(sections[0], level=1).closed, "a section stands for its tree"
+    # NEURON's own rule for the number of segments.
+    table = ours.section_table(Ra=sections[0].Ra, cm=sections[0].cm)
+    counts = dict(zip(table["neuron_section"].tolist(), table["nseg"].tolist(), strict=True))
+    dendrites = [section for section in sections if "soma" not in section.name()]
+
+    def constant(section: Any) -> float:
+        points = range(1, int(section.n3d()))
+        total = sum(
+            (section.arc3d(i) - section.arc3d(i - 1)) / np.sqrt(section.diam3d(i - 1) + section.diam3d(i)) for i in points
+        )
+        return float(section.L / (total * np.sqrt(2) * 1e-5 * np.sqrt(4 * np.pi * 100 * section.Ra * section.cm)))
+
+    for number, section in enumerate(dendrites, 1):
+        assert counts[number] == int((section.L / (0.1 * constant(section)) + 0.9) / 2) * 2 + 1
+    # Numbers of sections and segments are those of the points that lie there.
+    dendrites[3].nseg = 3
+    values = cell.neuron_values({"soma": -65.0, dendrites[3]: [1.0, 2.0, 3.0]})
+    types = cell.to_table()["type"]
+    assert set(values[types == 1]) == {-65.0} and set(values[types != 1][np.isfinite(values[types != 1])]) == {1.0, 2.0, 3.0}
+    assert cell.neuron_values({"soma": np.zeros((1, 5))}).shape == (len(types), 5)
+    with pytest.raises(ValueError, match="has no section 'dent'"):
+        cell.neuron_values({"dent": 1.0})
+    with pytest.raises(ValueError, match="is not of NEURON"):
+        ours.neuron_values({"soma": 1.0})
+    bare = h.Section(name="bare")
+    with pytest.raises(ValueError, match="section bare has no 3D points: call h.define_shape"):
+        nt.Morphology.from_neuron([bare])

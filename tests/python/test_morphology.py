@@ -68,7 +68,7 @@ def test_sections_make_a_tree(cell: nt.Morphology) -> None:
     assert (trunk.order, left.order) == (0, 1)
     assert left.length == pytest.approx(np.linalg.norm([10, 15, 3]))
     assert left.path_length == pytest.approx(trunk.length + left.length)
-    assert 0 < left.exposed_area < left.traced_area
+    assert 0 < left.exposed_area < left.area
     assert [neurite.type for neurite in cell.neurites] == [2, 3]
     assert cell.neurites[1].points.shape == (4, 3)
     assert sum(n.length for n in cell.neurites) == pytest.approx(cell.measures()["length"])
@@ -85,7 +85,7 @@ def test_open_files_bytes_and_paths_give_the_same(tmp_path: Path) -> None:
         assert (nt.read(file).points == read.points).all()
     assert (nt.read(io.BytesIO(FORKED.encode())).points == read.points).all()
     assert nt.read(FORKED.encode(), name="x/other.swc").name == "other"
-    with pytest.raises(TypeError, match="path, bytes or an open file, not from int"):
+    with pytest.raises(TypeError, match="path, bytes, an open file or a table, not from int"):
         nt.read(3)  # type: ignore[arg-type]
 
 
@@ -296,3 +296,35 @@ def test_addresses_are_read_by_fsspec(samples: Path, monkeypatch: pytest.MonkeyP
     assert cell.name == "granule" and cell == nt.read(samples / "granule.swc")
     with pytest.raises(FileNotFoundError, match="s3://cells/none.swc: there is no such file"):
         nt.read("s3://cells/none.swc")
+
+
+def test_section_tables_have_what_sections_tell(cell: nt.Morphology) -> None:
+    table = cell.section_table()
+    assert len(table) == len(cell.sections)
+    for row, section in zip(table, cell.sections, strict=True):
+        assert (row["section"], row["type"], row["order"]) == (section.id, section.type, section.order)
+        told = (section.length, section.area, section.volume, section.mean_diameter)
+        assert [row[name] for name in ("length", "area", "volume", "mean_diameter")] == pytest.approx(told)
+    # Of a cylinder: 10 µm long and 2 µm thick.
+    rod = nt.read(b"1 1 0 0 0 5 -1\n2 3 9 0 0 1 1\n3 3 9 5 0 1 2\n4 3 9 10 0 1 3\n")
+    [row] = rod.section_table()
+    assert row["volume"] == pytest.approx(10 * np.pi) and row["area"] == pytest.approx(20 * np.pi)
+    assert row["mean_diameter"] == pytest.approx(2)
+    # 1e5 sqrt(d / (4 pi f Ra cm)) is the length constant.
+    constant = 1e5 * np.sqrt(2 / (4 * np.pi * 100 * 35.4))
+    for share in (0.5, 0.1, 0.003):
+        d_lambda = 10 / constant * share
+        expected = int((1 / share + 0.9) / 2) * 2 + 1
+        assert rod.section_table(d_lambda=d_lambda)["nseg"].tolist() == [expected]
+
+
+def test_tables_are_cells_and_lists_are_told(cell: nt.Morphology) -> None:
+    mesh = nt.mesh(cell.to_table(), level=1)
+    assert mesh.closed
+    with pytest.raises(TypeError, match="of a list, neurotess.mesh_many makes meshes"):
+        nt.mesh([cell, cell])
+    with pytest.raises(TypeError, match="it is a surface, which neurotess.check judges"):
+        nt.mesh(mesh)
+    for threads in (0, -1):
+        with pytest.raises(ValueError, match=f"threads={threads} is not 1 or more"):
+            nt.mesh(cell, threads=threads)

@@ -119,7 +119,7 @@ def test_the_page_runs_as_printed(
                 assert ran.returncode == 0, ran.stderr
     assert sum(language == "python" for language, _ in blocks) >= 11
     made = {path.name for path in tmp_path.iterdir()}
-    assert {"cell.glb", "cell.png", "cell.asc", "both.png", "turn.png", "both.html", "meshes"} <= made
+    assert {"cell.glb", "cell.png", "cell.asc", "both.png", "turn.gif", "paper.png", "both.html", "meshes"} <= made
     assert "none.swc: there is no such file" in capsys.readouterr().out
 
 

@@ -475,3 +475,55 @@ def test_a_group_is_a_dictionary(cell: nt.Morphology) -> None:
     wrong: Any = "iso"
     with pytest.raises(nt.OptionError, match=r"^camera='iso': a dictionary is needed, as in \{'view': …\}$"):
         nt.render(cell, camera=wrong)
+
+
+def test_pictures_tell_where_points_are(cell: nt.Morphology) -> None:
+    for options in ({"view": "iso"}, {"view": "top", "orthographic": True}):
+        look = {"size": (320, 200), "legend": False, "samples": 1, "least_width": 3}
+        picture = nt.render(cell, color_by="type", transparent=True, **look, **options)
+        places = picture.project(cell.points)
+        assert places.shape == (len(cell), 2)
+        x, y = np.floor(places).astype(int).T
+        assert (np.asarray(picture)[y, x, 3] > 0).mean() > 0.98, "points lie where something shows"
+        # The same camera by value, of another picture.
+        again = nt.render(cell, color_by="type", transparent=True, camera=picture.camera, **look)
+        assert (np.asarray(again) == np.asarray(picture)).all()
+    assert np.isnan(picture.project([[0, 1e6, 0]])).any() == (not picture.camera["orthographic"])
+
+
+def test_scales_are_of_matplotlib(cell: nt.Morphology) -> None:
+    pytest.importorskip("matplotlib")
+    assert nt.render(cell, **SMALL).mappable is None
+    mappable = nt.render(cell, color_by="depth", range=(0, 100), **SMALL).mappable
+    assert (mappable.norm.vmin, mappable.norm.vmax, mappable.label) == (0, 100, "path distance (µm)")
+    assert mappable.to_rgba(0)[:3] == pytest.approx((68 / 255, 1 / 255, 84 / 255), abs=1e-6)
+
+
+def test_pictures_know_their_size_on_paper(cell: nt.Morphology, tmp_path: Path) -> None:
+    import io
+    import struct
+
+    picture = nt.render(cell, **SMALL)
+    file = io.BytesIO()
+    picture.save(file, dpi=300)
+    at = file.getvalue().index(b"pHYs") + 4
+    assert struct.unpack(">IIB", file.getvalue()[at : at + 9]) == (11811, 11811, 1)
+    assert file.getvalue().index(b"pHYs") < file.getvalue().index(b"IDAT")
+    picture.save(tmp_path / "plain.png")
+    assert b"pHYs" not in (tmp_path / "plain.png").read_bytes()
+    assert nt.render(cell, like=tmp_path / "plain.png").size == picture.size
+    with pytest.raises(ValueError, match="dpi=0"):
+        picture.to_png(dpi=0)
+
+
+def test_films_have_a_length_and_are_saved(cell: nt.Morphology, tmp_path: Path) -> None:
+    film = nt.film(cell, turntable=True, frames=3, **SMALL)
+    assert len(film) == 3 and [picture.size for picture in film] == [SMALL["size"]] * 3
+    first = next(film)
+    assert (np.asarray(first) == np.asarray(next(iter(film)))).all()
+    with pytest.raises(ValueError, match="a film is .gif"):
+        film.save(tmp_path / "film.avi")
+    pil = pytest.importorskip("PIL.Image")
+    film.save(tmp_path / "film.gif", fps=10)
+    with pil.open(tmp_path / "film.gif") as saved:
+        assert (saved.n_frames, saved.size, saved.info["duration"]) == (3, SMALL["size"], 100)

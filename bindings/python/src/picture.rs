@@ -317,6 +317,14 @@ impl Drawing {
         Ok((eye, target, up.to_array(), camera.fov(), orthographic))
     }
 
+    /// The title of a picture's scale, the numbers at its ends, and its colors; none if colors tell kinds.
+    fn scale(&self, picture: usize) -> PyResult<Option<(String, [f32; 2], Vec<Rgb>)>> {
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let legend = shared.as_ref().ok_or_else(closed)?.legend(picture);
+        let told = legend.scale();
+        Ok(told.map(|(title, range, colors)| (title.to_owned(), range, colors.to_vec())))
+    }
+
     /// What is at a pixel, or near it; none if nothing is.
     fn pick<'py>(
         &self,

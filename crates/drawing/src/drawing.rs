@@ -12,7 +12,7 @@ use neurotess_color::{ClosestColors, MarkerSet};
 use neurotess_morphology::Morphology;
 use neurotess_options::groups::CellSelection;
 use neurotess_options::words::{Point, Time, ViewSide};
-use neurotess_picture::overlay::Overlay;
+use neurotess_picture::overlay::{Legend, Overlay};
 use neurotess_picture::{BoundingSphere, Camera, Placement, Viewpoint};
 
 use crate::cameras;
@@ -249,6 +249,11 @@ impl Drawing {
         }
         (asked.turntable, asked.frames, asked.picture_times) = (false, None, None);
         recipe_of(&single, &self.left_out)
+    }
+
+    /// The legend of a picture.
+    pub fn legend(&self, picture: usize) -> Legend {
+        self.colored.legend(picture)
     }
 
     /// Number of neurons in the pictures.

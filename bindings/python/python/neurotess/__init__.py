@@ -49,7 +49,8 @@ from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_all, mesh_many
 from ._circuits import Circuit
 from ._reports import Report
 from ._pages import html
-from ._pictures import Image, film, render
+from ._images import Film, Image
+from ._pictures import film, render
 from ._ids import Ids, ids
 
 TYPE_CHECKING = False
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Circuit",
     "Failed",
+    "Film",
     "FolderError",
     "ForbiddenFileError",
     "Ids",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ._morphology import Morphology, _with_warnings
-from ._sources import package_of, read_cell
+from ._sources import is_table, package_of, read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,6 +15,8 @@ def cell_of(source: Any) -> Morphology:
     if isinstance(source, Morphology):
         return source
     package = package_of(source)
+    if package is None and is_table(source):
+        return Morphology.from_table(source)
     if package is None:
         return _with_warnings(read_cell(source, None, None, False))
     return _from_package(source, package)
@@ -22,12 +24,14 @@ def cell_of(source: Any) -> Morphology:
 
 def quietly(source: Any) -> Morphology:
     """The cell, without warnings: they are in `Morphology.warnings`."""
-    if isinstance(source, Morphology) or package_of(source):
+    if isinstance(source, Morphology) or package_of(source) or is_table(source):
         return cell_of(source)
     return Morphology(read_cell(source, None, None, False))
 
 
 def _from_package(source: Any, package: str) -> Morphology:
+    if package in ("nrn", "hoc"):
+        return Morphology.from_neuron(source)
     if package == "navis" and not hasattr(source, "nodes"):
         kind = type(source).__name__
         raise TypeError(f"a {kind} of navis has no tracing: a TreeNeuron is needed (of a list, use neurotess.mesh_many)")

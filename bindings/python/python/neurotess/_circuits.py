@@ -14,7 +14,8 @@ from ._parts import Notice
 from ._nodes import rows_of
 from ._packages import needed
 from ._pages import html
-from ._pictures import Image, render
+from ._images import Image
+from ._pictures import render
 from ._reports import Report
 from ._scene import DrawnCircuit, check_names
 
@@ -256,7 +257,24 @@ class Circuit(DrawnCircuit):
     def report(self, name: str | os.PathLike[str], *, population: str | None = None) -> Report:
         """A report or a file of spikes: one that the configuration names, or a file. Where it has several populations of
         nodes, `population` says which."""
-        return Report(self.reports.get(os.fspath(name), os.fspath(name)), population, circuit=self)
+        return Report(self._report_file(name), population, circuit=self)
+
+    @property
+    def spikes(self) -> Report:
+        """The first file of spikes that the configuration names; ``AttributeError`` where it names none."""
+        for file in self.reports.values():
+            if _neurotess.Report(file).is_of_spikes:
+                return Report(file, circuit=self)
+        raise AttributeError(f"{self.file} names no file of spikes")
+
+    def _report_file(self, name: str | os.PathLike[str]) -> str:
+        """The file of a report: one that the configuration names, or a file."""
+        name = os.fspath(name)
+        file = self.reports.get(name, name)
+        if file == name and not os.path.exists(name) and os.sep not in name:
+            known = ", ".join(map(repr, self.reports)) or "none"
+            raise KeyError(f"{self.file} names no report {name!r}, and there is no such file: it has {known}")
+        return file
 
     def render(self, **options: Unpack[RenderOptions]) -> Image:
         """A picture of the circuit: `neurotess.render` with this circuit.
@@ -267,6 +285,8 @@ class Circuit(DrawnCircuit):
             files = self.reports.values()
             on_cells = (file for file in files if self._circuit.elements(file) == "section")
             options["report"] = next((file for file in on_cells if not _neurotess.Report(file).is_of_spikes), None)
+        elif (report := options.get("report")) is not None:
+            options["report"] = self._report_file(report)
         return render(self, **options)
 
     if TYPE_CHECKING:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ._circuits import Circuit
     from ._meshes import Mesh
     from ._morphology import Morphology
-    from ._pictures import Image
+    from ._images import Image
 
 #: Pixels of pictures, which a screen of twice the density shows sharp.
 SIZE = (480, 360)

@@ -9,7 +9,8 @@ import warnings
 from ._errors import NeurotessWarning, RenderError
 from ._groups import ungrouped
 from ._packages import needed
-from ._pictures import Image, render
+from ._images import Image
+from ._pictures import render
 from ._scene import DrawnCircuit, check_names, drawing_of
 from ._series import Times
 from ._words import spoken

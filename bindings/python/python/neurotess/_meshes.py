@@ -11,6 +11,7 @@ from ._units import plain
 from ._own import check_name, color_column, holds_own, own_arrays, own_column
 from ._parts import Notice
 from ._packages import needed
+from ._sources import arrays_of, is_surface
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ._colormaps import Colormap
     from ._colors import Color
     from ._morphology import Morphology
-    from ._pictures import Image
+    from ._images import Image
     from ._places import OnLines
     from ._reports import Report
 
@@ -426,8 +427,10 @@ def read_mesh(path: str | os.PathLike[str], *, format: str | None = None) -> Mes
     return Mesh(surface, name=os.path.basename(os.fspath(path)), own=own_arrays(own))
 
 
-def check(mesh: Mesh | str | os.PathLike[str], *, merge: bool = False) -> dict[str, Any]:
-    """Judges a mesh or a mesh file: `Mesh.check`."""
+def check(mesh: Mesh | str | os.PathLike[str] | Any, *, merge: bool = False) -> dict[str, Any]:
+    """Judges a mesh or a mesh file, or a surface of another package (trimesh, PyVista, navis; µm): `Mesh.check`."""
+    if is_surface(mesh) and not isinstance(mesh, Mesh):
+        mesh = Mesh.from_arrays(*arrays_of(mesh))
     if not isinstance(mesh, Mesh):
         mesh = read_mesh(mesh)
     return mesh.check(merge=merge)

@@ -111,6 +111,7 @@ def mesh(
     for name in ("cell", "threads"):
         del options[name]
     recipe = _options.recipe(options)
+    _check_threads(threads)
     return _mesh(recipe, cell_of(cell), threads)
 
 
@@ -212,9 +213,31 @@ class Failed(MeshResult):
         return type(self), (self.input, self.error)
 
 
+class Results:
+    """What becomes of the cells of `mesh_many`, one after the other."""
+
+    def __init__(self, cells: Iterable[Any], results: Iterator[Meshed | Failed]) -> None:
+        self._cells = cells
+        self._results = results
+
+    def __iter__(self) -> Iterator[Meshed | Failed]:
+        return self._results
+
+    def __next__(self) -> Meshed | Failed:
+        return next(self._results)
+
+    def __len__(self) -> int:
+        count: int = len(self._cells)  # type: ignore[arg-type]
+        return count
+
+    def close(self) -> None:
+        """Stops the work."""
+        self._results.close()  # type: ignore[attr-defined]
+
+
 def mesh_many(
     cells: Iterable[Source] | str | os.PathLike[str], *, threads: int | None = None, **options: Unpack[MeshOptions]
-) -> Iterator[Meshed | Failed]:
+) -> Results:
     """Meshes many cells or files on `threads` threads (all cores), with the options of `mesh`.
 
     `cells` are what `mesh` takes, or a folder, of which all SWC, ASC, NeuroML and TRACES files are meshed.
@@ -222,7 +245,7 @@ def mesh_many(
     bad file never ends the batch.
     Not more than two cells a thread are in memory, beside the one that you hold. Wrong options raise
     ``ValueError`` at once. Warnings of readers are in `Mesh.warnings` only. Ctrl-C, and ``close()`` of the iterator,
-    stop the work.
+    stop the work. ``len()`` of it is the number of cells, where they have one, so ``tqdm(nt.mesh_many(…))`` shows how far it is.
 
     >>> import neurotess as nt
     >>> cells = [nt.synth("granule", seed=seed, points=100) for seed in range(3)]
@@ -230,13 +253,12 @@ def mesh_many(
     [True, True, True]
     """
     recipe = _options.recipe(options)
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads={threads} is not 1 or more")
+    _check_threads(threads)
     if isinstance(cells, (str, os.PathLike)):
         cells = files_of(cells)
     elif is_alone(cells):
         cells = [cells]
-    return _results(cells, recipe, threads or _cores())
+    return Results(cells, _results(cells, recipe, threads or _cores()))
 
 
 def mesh_all(
@@ -274,12 +296,16 @@ def mesh_all(
     True
     """
     recipe = _options.recipe(options)
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads={threads} is not 1 or more")
+    _check_threads(threads)
     if isinstance(inputs, (str, os.PathLike)):
         inputs = [inputs]
     wanted = {"format": format, "resume": resume, "overwrite": overwrite, "shard": shard, "threads": threads}
     return _neurotess.mesh_all(recipe, [expanded(path) for path in inputs], expanded(folder), wanted)
+
+
+def _check_threads(threads: int | None) -> None:
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads={threads} is not 1 or more")
 
 
 def _cores() -> int:

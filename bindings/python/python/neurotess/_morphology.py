@@ -12,6 +12,7 @@ from ._sources import expanded, files_of, read_cell
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
     from typing import IO, Any, TypeAlias, Union, overload
 
@@ -60,6 +61,7 @@ class Morphology:
         self.edits = edits
         self.id = id
         self.connectors = connectors
+        self._neuron: Any = None
         self._columns: dict[str, NDArray[Any]] | None = None
         self._exposed: NDArray[np.float64] | None = None
         self._child_ids: list[list[int]] | None = None
@@ -278,6 +280,25 @@ class Morphology:
             table[name] = columns["position"][:, axis]
         return table
 
+    def section_table(
+        self, *, d_lambda: float = 0.1, frequency: float = 100.0, Ra: float = 35.4, cm: float = 1.0
+    ) -> NDArray[np.void]:
+        """A row for each section, as `Section` tells them: ``section``, ``neuron_section``, ``type``, ``parent``, ``neurite``,
+        ``order``, ``length``, ``area``, ``volume``, ``mean_diameter``, ``path_length``, and ``nseg``.
+
+        ``nseg`` is how many segments it takes so that none is longer than `d_lambda` of the length constant at a `frequency`
+        (Hz), with an axial resistance `Ra` (Ω cm) and a capacitance `cm` (µF/cm²): the rule and the defaults of NEURON.
+        It is a structured array; ``pandas.DataFrame(cell.section_table())`` is a data frame of it.
+
+        >>> import neurotess as nt
+        >>> table = nt.synth("granule").section_table()
+        >>> table.dtype.names[:3], bool((table["nseg"] % 2 == 1).all())
+        (('section', 'neuron_section', 'type'), True)
+        """
+        from ._section_table import section_table
+
+        return section_table(self, d_lambda, frequency, Ra, cm)
+
     @classmethod
     def from_table(cls, table: Any, *, name: str = "table", strict: bool = False) -> Morphology:
         """A cell of a table as SWC has it: a row for each sample, by the same rules as a file.
@@ -338,6 +359,31 @@ class Morphology:
         from ._exchange import from_neurom
 
         return _with_warnings(from_neurom(morphology, strict))
+
+    @classmethod
+    def from_neuron(cls, sections: Any, *, name: str | None = None, strict: bool = False) -> Morphology:
+        """A cell of NEURON: of ``h.allsec()``, a list of sections, one section (its whole tree), or an object of a template
+        with its sections in ``all``. They need 3D points: ``h.define_shape()`` makes them where there are none.
+
+        Types follow from names that begin with soma, axon, dend, basal or apic. `neuron_values` colors it by section.
+        """
+        from ._neuron import table_of
+
+        table, places, cell_name = table_of(sections)
+        cell = cls.from_table(table, name=name or cell_name, strict=strict)
+        cell._neuron = places
+        return cell
+
+    def neuron_values(self, values: Mapping[Any, Any]) -> NDArray[np.float64]:
+        """Of numbers by section of NEURON, or by its name, those of each row of `to_table`, for `values` of pictures: a number of
+        a section, an array with one of each segment, or an array (segments, times), which makes them over time. NaN where a
+        section has none.
+
+        ``neurotess.render(cell, values=cell.neuron_values({"soma": -65.0, "dend[0]": [-64.0, -60.5, -58.0]}))``
+        """
+        from ._neuron import values_of_sections
+
+        return values_of_sections(values, self._neuron, self.to_table()["id"], self.name)
 
     # Python
 

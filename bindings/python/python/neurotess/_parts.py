@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -162,9 +164,19 @@ class Section:
         return float(self._of("length"))
 
     @property
-    def traced_area(self) -> float:
+    def area(self) -> float:
         """Area (µm²) of its frusta, from the point that it branches from on, without caps."""
         return float(self._of("area"))
+
+    @property
+    def volume(self) -> float:
+        """Volume (µm³) of its frusta, from the point that it branches from on."""
+        return float(self._of("volume"))
+
+    @property
+    def mean_diameter(self) -> float:
+        """Diameter (µm) of a cylinder of the same length and area; 0 where it has no length."""
+        return self.area / (math.pi * self.length) if self.length > 0 else 0.0
 
     @property
     def exposed_area(self) -> float:

@@ -8,79 +8,23 @@ import warnings
 from . import _neurotess, _options
 from ._errors import NeurotessWarning, OptionError
 from ._groups import ungrouped
+from ._images import Film, Image
 from ._scene import check_names, drawing_of
 from ._units import times_of
 from ._words import spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from typing import Any, Literal
 
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ._colormaps import Colormap
     from ._colors import Color
     from ._nodes import Nodes
     from ._typed import Camera, ColorBy, Drawable, Markers, Meshes, Scene, Side
     from ._values import Values
-
-
-class Image:
-    """A picture: ``np.asarray(picture)`` are its pixels, (height, width, 4) bytes of red, green, blue, alpha.
-
-    It shows itself in a notebook.
-    """
-
-    def __init__(
-        self, pixels: NDArray[np.uint8], *, transparent: bool = False, recipe: str | None = None
-    ) -> None:
-        self._pixels = pixels
-        self._transparent = transparent
-        self._recipe = recipe
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height (pixels)."""
-        height, width, _ = self._pixels.shape
-        return width, height
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        import numpy as np
-
-        if copy:
-            return np.array(self._pixels, dtype=dtype)
-        return np.asarray(self._pixels, dtype=dtype)
-
-    def to_png(self) -> bytes:
-        """The bytes of a PNG file, which tells how the picture was made: see `like` of `render`."""
-        return _neurotess.png(self._pixels, self._transparent, self._recipe)
-
-    def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> None:
-        """Writes a PNG file; other formats need Pillow."""
-        extension = os.path.splitext(os.fspath(path))[1].lower()
-        if not overwrite and os.path.exists(path):
-            raise FileExistsError(f"{os.fspath(path)} exists")
-        if extension in ("", ".png"):
-            with open(path, "wb") as file:
-                file.write(self.to_png())
-        else:
-            self.to_pillow().save(path)
-
-    def to_pillow(self) -> Any:
-        """A `PIL.Image.Image`."""
-        from ._packages import needed
-
-        image = needed("PIL.Image").fromarray(self._pixels)
-        return image if self._transparent else image.convert("RGB")
-
-    def _repr_png_(self) -> bytes:
-        return self.to_png()
-
-    def __repr__(self) -> str:
-        width, height = self.size
-        return f"<Image: {width} × {height}>"
 
 
 def render(
@@ -201,7 +145,11 @@ def render(
     del options["what"]
     options = ungrouped(options)
     _check_pairs(options)
-    return next(_pictures(what, options))
+    drawing = _drawing(what, options)
+    try:
+        return Image.drawn(drawing, 0)
+    finally:
+        drawing.close()
 
 
 def film(
@@ -211,13 +159,17 @@ def film(
     time: tuple[float, float, float] | tuple[float, float] | ArrayLike | None = None,
     frames: int | None = None,
     **options: Any,
-) -> Iterator[Image]:
+) -> Film:
     """Draws a series of pictures, one after the other: once around with `turntable` (36 pictures, or `frames`), or
     through a report, or through `values` over time, with `time`: a tuple (from, to, and the step, in ms, or `frames`), or an
     array of the times of all pictures. The options are those of `render`.
 
     >>> import neurotess as nt
-    >>> for number, picture in enumerate(nt.film(cell, turntable=True)): # doctest: +SKIP
+    >>> film = nt.film(nt.synth("granule"), turntable=True, frames=8, size=(96, 64))
+    >>> len(film)
+    8
+    >>> film.save("turn.gif")                                         # doctest: +SKIP
+    >>> for number, picture in enumerate(film):                       # doctest: +SKIP
     ...     picture.save(f"turn_{number:03}.png")
     """
     between, at = _times(time)
@@ -229,7 +181,7 @@ def film(
         raise ValueError("a film needs turntable=True, or time=(from, to, step)")
     if at is not None and (turntable or frames is not None):
         raise ValueError("time= is of each picture: leave out turntable= and frames=")
-    return _pictures(what, {**options, **series}, at)
+    return Film(lambda: _drawing(what, {**options, **series}, at))
 
 
 def _times(time: Any) -> tuple[Any, list[float] | None]:
@@ -259,8 +211,8 @@ def _check_pairs(options: Mapping[str, Any]) -> None:
             raise OptionError(f"{name}= needs {other}=, too", name, f"{other}= is needed, too")
 
 
-def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = None) -> Iterator[Image]:
-    """All pictures that the options ask for, or those of these times."""
+def _drawing(what: Any, options: dict[str, Any], times: list[float] | None = None) -> _neurotess.Drawing:
+    """What draws the pictures that the options ask for, or those of these times."""
     given, options = options, dict(options)
     options["no_legend"] = not options.pop("legend", True)
     options["no_cache"] = not options.pop("cache", True)
@@ -269,8 +221,4 @@ def _pictures(what: Any, options: dict[str, Any], times: list[float] | None = No
     drawing = drawing_of(what, options, options.pop("adapter", None), given, times)
     for message in drawing.messages:
         warnings.warn(NeurotessWarning(spoken(message)), stacklevel=3)
-    try:
-        for number in range(drawing.pictures):
-            yield Image(drawing.draw(number), transparent=drawing.transparent, recipe=drawing.recipe(number))
-    finally:
-        drawing.close()
+    return drawing

@@ -60,6 +60,9 @@ class Report:
         """The file."""
         return self._path
 
+    def __fspath__(self) -> str:
+        return self._path
+
     @property
     def populations(self) -> list[str]:
         """Names of the populations in the file."""
@@ -194,6 +197,8 @@ class Report:
     @property
     def spikes(self) -> pd.DataFrame:
         """A table of spikes: ``time`` (ms), ``node_id``; needs pandas."""
+        if not self.is_of_spikes:
+            raise AttributeError(f"{self._path} has values, no spikes")
         pandas = needed("pandas", "circuit")
         times, nodes = self._report.spikes(self._index)
         return pandas.DataFrame({"time": times, "node_id": nodes.astype("int64")})

@@ -19,24 +19,43 @@ def package_of(source: Any) -> str | None:
     """The package that a cell is of, if it is one that we know."""
     for base in type(source).__mro__:
         package = base.__module__.partition(".")[0]
-        if package in ("navis", "morphio", "neurom"):
+        if package in ("navis", "morphio", "neurom", "nrn", "hoc"):
             return package
     return None
 
 
 def is_surface(source: Any) -> bool:
-    """Whether it is a surface: a `Mesh`, or another package's with vertices and faces."""
-    if hasattr(source, "nodes") or isinstance(source, (str, bytes)):
+    """Whether it is a surface: a `Mesh`, or another package's with vertices (or points, as in PyVista) and faces."""
+    if isinstance(source, (str, bytes)) or package_of(source) in ("nrn", "hoc") or hasattr(source, "nodes"):
         return False
-    return hasattr(source, "vertices") and hasattr(source, "faces")
+    return (hasattr(source, "vertices") or hasattr(source, "triangulate")) and hasattr(source, "faces")
+
+
+def arrays_of(surface: Any) -> tuple[Any, Any]:
+    """Vertices and triangles of a surface of another package."""
+    if hasattr(surface, "vertices"):
+        return surface.vertices, surface.faces
+    # PyVista: faces are numbers of corners, each before these.
+    triangles = surface.triangulate()
+    return triangles.points, triangles.faces.reshape(-1, 4)[:, 1:]
+
+
+def is_table(source: Any) -> bool:
+    """Whether it is a table of samples: a data frame, a structured array or columns by name."""
+    named = getattr(getattr(source, "dtype", None), "names", None)
+    return bool(named) or isinstance(source, dict) or hasattr(source, "columns")
 
 
 def is_alone(source: Any) -> bool:
     """Whether it is one cell, and no list of them."""
+    package = package_of(source)
+    if package is not None:
+        # Whatever else one asks of an object of NEURON may be an error.
+        return type(source).__name__ != "NeuronList"
     # A `Morphology` has a cell of the module; it is not imported here, since it reads by this file.
     if isinstance(source, (str, os.PathLike, bytes)) or hasattr(source, "read") or hasattr(source, "_cell"):
         return True
-    return package_of(source) is not None and type(source).__name__ != "NeuronList"
+    return is_table(source) or is_surface(source)
 
 
 def files_of(path: str | os.PathLike[str]) -> list[str]:
@@ -80,8 +99,13 @@ def read_cell(
     if isinstance(source, str):
         source = source.encode()
     if not isinstance(source, (bytes, bytearray, memoryview)):
+        hint = ""
+        if isinstance(source, (list, tuple)):
+            hint = ": of a list, neurotess.mesh_many makes meshes and neurotess.render a picture"
+        elif is_surface(source):
+            hint = ": it is a surface, which neurotess.check judges and neurotess.render draws"
         raise TypeError(
-            f"a morphology is read from a path, bytes or an open file, not from {type(source).__name__}"
+            f"a morphology is read from a path, bytes, an open file or a table, not from {type(source).__name__}{hint}"
         )
     return _neurotess.Cell.read_bytes(bytes(source), str(name or "<bytes>"), format, strict)
 

@@ -9,7 +9,7 @@ from . import _neurotess, _options
 from ._colors import text_of
 from ._errors import missing_file
 from ._meshes import Mesh, read_mesh
-from ._sources import is_alone, is_surface
+from ._sources import arrays_of, is_alone, is_surface
 from ._units import grayed, plain, unit_of
 
 TYPE_CHECKING = False
@@ -74,7 +74,7 @@ def looks_of(meshes: Any) -> list[dict[str, Any]]:
 
 def _of_package(source: Any, name: str, values: Any) -> Mesh:
     """A mesh of another package, with the attribute that is wanted of it."""
-    mesh = Mesh.from_arrays(source.vertices, source.faces, name=name)
+    mesh = Mesh.from_arrays(*arrays_of(source), name=name)
     theirs = getattr(source, "vertex_attributes", None)
     if isinstance(values, str) and isinstance(theirs, Mapping):
         if values not in theirs:

@@ -7,7 +7,7 @@ from ._groups import ungrouped
 from ._pages import page_of
 from ._pictures import render
 from ._scene import DrawnCircuit, _cells, _chosen, check_names
-from ._sources import is_alone
+from ._sources import is_alone, is_surface
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -81,6 +81,12 @@ class View:
             raise ValueError(f"renderer={renderer!r}: 'browser' or 'kernel' is needed")
         check_names("View", render, options)
         options = ungrouped(options)
+        if _has_surfaces(what):
+            if renderer == "browser":
+                raise ValueError("pages hold cells, no surfaces: leave renderer= out")
+            from ._kernel_view import KernelView
+
+            return KernelView(what, size=size, **options)
         shown = _read(what)
         known = {*PAGE, "time"} if _can_live() else PAGE
         others = [name for name, value in options.items() if name not in known and value not in (None, False)]
@@ -122,6 +128,12 @@ class View:
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(_missing(name))
+
+
+def _has_surfaces(what: Any) -> bool:
+    if is_surface(what):
+        return True
+    return isinstance(what, (list, tuple)) and any(map(is_surface, what))
 
 
 def _read(what: Any) -> Any:

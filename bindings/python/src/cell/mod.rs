@@ -299,6 +299,8 @@ impl Cell {
         sections.set_item("order", arrays::column(py, orders)?)?;
         sections.set_item("length", arrays::column(py, shape::section_lengths(cell))?)?;
         sections.set_item("area", arrays::column(py, shape::section_areas(cell))?)?;
+        let volumes = shape::section_volumes(cell);
+        sections.set_item("volume", arrays::column(py, volumes)?)?;
         sections.set_item(
             "path_length",
             arrays::column(py, shape::path_lengths(cell))?,
@@ -314,13 +316,13 @@ impl Cell {
         Ok(sections)
     }
 
-    /// A dictionary for each soma.
     /// What shows of the cones of each section (µm²).
     fn exposed_areas(&self, py: Python<'_>) -> PyResult<Py<PyArray1<f64>>> {
         let areas = detached(py, || exposed_areas(&self.morphology))?;
         arrays::column(py, areas)
     }
 
+    /// A dictionary for each soma.
     fn somata<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let origin = self.morphology.origin;
         let one = |soma: &neurotess::morphology::Soma| {

@@ -39,6 +39,14 @@ impl Legend {
         }
     }
 
+    /// What its bar tells: its title, the numbers at its ends and its colors; none if it names colors.
+    pub fn scale(&self) -> Option<(&str, [f32; 2], &[Rgb])> {
+        match &self.kind {
+            Kind::Bar { scale, range, .. } => Some((&self.title, *range, scale)),
+            Kind::Swatches(_) => self.below.as_ref()?.scale(),
+        }
+    }
+
     /// A scale from `range[0]` to `range[1]`; `more`: its upper end stands for all above, too.
     pub fn bar(title: &str, unit: &str, scale: Vec<Rgb>, range: [f32; 2], more: bool) -> Self {
         let title = if unit.is_empty() {
