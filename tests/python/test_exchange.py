@@ -241,10 +241,10 @@ def test_cells_of_neuron_come_with_their_sections(samples: Path) -> None:
         assert counts[number] == int((section.L / (0.1 * constant(section)) + 0.9) / 2) * 2 + 1
     # Numbers of sections and segments are those of the points that lie there.
     dendrites[3].nseg = 3
-    values = cell.neuron_values({"soma": -65.0, dendrites[3]: [1.0, 2.0, 3.0]})
+    values = cell.neuron_values({"soma[0]": -65.0, dendrites[3]: [1.0, 2.0, 3.0]})
     types = cell.to_table()["type"]
     assert set(values[types == 1]) == {-65.0} and set(values[types != 1][np.isfinite(values[types != 1])]) == {1.0, 2.0, 3.0}
-    assert cell.neuron_values({"soma": np.zeros((1, 5))}).shape == (len(types), 5)
+    assert cell.neuron_values({"soma[0]": np.zeros((1, 5))}).shape == (len(types), 5)
     with pytest.raises(ValueError, match="has no section 'dent'"):
         cell.neuron_values({"dent": 1.0})
     with pytest.raises(ValueError, match="is not of NEURON"):
