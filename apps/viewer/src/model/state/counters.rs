@@ -24,6 +24,8 @@ pub struct Counters {
     pub rebuilds: Rebuilds,
     /// How the quality of drafts is reduced.
     pub draft: Draft,
+    /// Whether the picture at rest, which is reduced, is being drawn in full.
+    pub completes: bool,
     /// How the quality of the picture at rest is reduced, if it is.
     pub lowered: Option<Lowered>,
     /// Synapses and points that the picture shows, those in view, and all; none without any.

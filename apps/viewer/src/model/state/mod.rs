@@ -317,6 +317,14 @@ impl State {
     }
 
     fn edit(&mut self, edit: Edit) {
+        let edit = match edit {
+            // Where the list is filtered, all are those that it shows.
+            Edit::SelectAll if !self.layout.search.is_empty() => {
+                let shows = |&neuron: &usize| self.document.neurons.shows(neuron);
+                Edit::Select(self.found().iter().copied().filter(shows).collect(), false)
+            }
+            edit => edit,
+        };
         let before = self.document.clone();
         let (name, joins) = (edit.name(), edit.joins());
         let measures = matches!(edit, Edit::AddDimension(_));

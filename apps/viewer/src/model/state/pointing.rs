@@ -20,6 +20,8 @@ pub struct Pointing {
     pub picked: Option<Picked>,
     /// The synapse or point that was clicked last.
     pub picked_marker: Option<MarkerRef>,
+    /// The neuron whose line in the list was clicked last: where a range begins.
+    pub listed: Option<usize>,
     /// A part that the tree must scroll to.
     pub reveal: Option<Picked>,
 }

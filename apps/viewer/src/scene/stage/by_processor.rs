@@ -14,7 +14,7 @@ use super::cost_model::RestMode;
 use super::{PictureInputs, RestPhase, Stage};
 use crate::io::background::apart;
 use crate::io::task::{Progress, Task};
-use crate::model::document::Detail;
+use crate::model::document::{Detail, RestChoice};
 use crate::model::state::State;
 use crate::scene::content;
 use crate::scene::markers::settings;
@@ -27,6 +27,17 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(15);
 impl Stage {
     /// Whether the processor draws the picture at rest: what the adapter, if it is software, would refine.
     pub(super) fn draws_by_processor(&self, params: &ViewParams, detail: Detail) -> bool {
+        self.pace.rest_mode == RestMode::Refined && self.can_by_processor(params, detail)
+    }
+
+    /// Whether the processor draws in full what exploration mode has drawn, while that is shown.
+    pub(super) fn completes(&self, params: &ViewParams, detail: Detail) -> bool {
+        let explored = self.pace.rest_mode == RestMode::Explored;
+        let asked = detail.at_rest == RestChoice::Automatic;
+        explored && asked && self.can_by_processor(params, detail)
+    }
+
+    fn can_by_processor(&self, params: &ViewParams, detail: Detail) -> bool {
         // Levels of another camera, and patches that are left out, are the adapter's.
         let plain = params.frozen.is_none() && detail.smallest <= 0.0;
         // Colored anew, as it is by the adapter, something translucent has another grain, and a clamped neuron other
@@ -36,8 +47,7 @@ impl Stage {
             && self.clamped.fine.is_empty()
             && self.content.recording.is_none()
             && self.markers.made().is_none();
-        let refined = self.pace.rest_mode == RestMode::Refined;
-        self.gpu.adapter.software && plain && alike && refined
+        self.gpu.adapter.software && plain && alike
     }
 
     /// Whether the first draft of a scene is left out: its shaders would be compiled for a second or more, and the
@@ -125,10 +135,20 @@ impl Stage {
                 ctx.request_repaint_after(CHECK_INTERVAL);
                 return Ok(());
             }
-            Some(Ok(image)) => self.put(&params, &image)?,
+            Some(Ok(image)) => {
+                self.put(&params, &image)?;
+                if self.pace.rest_mode == RestMode::Explored {
+                    // What is under the cursor is known already.
+                    self.pace.rest_mode = RestMode::Refined;
+                    self.pace.phase = RestPhase::Done;
+                }
+            }
             Some(Err(why)) => {
                 state.problem("drawing the picture", why);
-                self.pace.phase = self.begin(params, detail)?;
+                self.pace.phase = match self.pace.rest_mode {
+                    RestMode::Explored => RestPhase::Done,
+                    RestMode::Refined | RestMode::Coarser => self.begin(params, detail)?,
+                };
             }
         }
         (self.resting, self.awaited) = (None, false);

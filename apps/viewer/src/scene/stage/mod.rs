@@ -35,6 +35,7 @@ use crate::scene::content::{InstancesKey, SceneContent, StatesKey};
 use crate::scene::explorer::Explorer;
 use building::Built;
 use clamped::Clamped;
+use cost_model::RestMode;
 use frames::RecordedValues;
 use markers::{MarkersKey, StageMarkers};
 use meshes::{DrawnMeshes, StageMeshes};
@@ -328,6 +329,8 @@ impl Stage {
         };
         state.drawing.counters.markers = self.markers.shown();
         state.drawing.counters.lowered = self.lowered();
+        state.drawing.counters.completes =
+            self.resting.is_some() && self.pace.rest_mode == RestMode::Explored;
         state.drawing.counters.static_picture = self.static_figures();
         self.gpu.check()?;
         Ok(self.texture_id())

@@ -107,6 +107,9 @@ impl Stage {
                 self.survey()?;
                 ctx.request_repaint();
             }
+            RestPhase::Collects if self.completes(&params, detail) && !self.lacks_ids() => {
+                self.pace.phase = self.begin_by_processor(state, (params, detail), ctx);
+            }
             RestPhase::Collects => {
                 self.collect(params, detail)?;
                 ctx.request_repaint();

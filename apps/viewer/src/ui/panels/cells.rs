@@ -171,11 +171,27 @@ fn named(state: &mut State, index: usize, response: &egui::Response, hovered: &m
         state.requests.push(Command::Focus);
     } else if response.clicked() {
         let modifiers = response.ctx.input(|i| i.modifiers);
-        let adds = modifiers.shift || modifiers.command;
-        state.requests.push(Edit::Select(vec![index], adds).into());
-        state.pointing.picked = Some(soma);
+        let edit = match state.pointing.listed.filter(|_| modifiers.shift) {
+            Some(from) => Edit::Select(between(&state.found(), from, index), false),
+            None => Edit::Select(vec![index], modifiers.command),
+        };
+        state.requests.push(edit.into());
+        if !modifiers.shift {
+            state.pointing.listed = Some(index);
+        }
+        // The whole cell is meant, no part of it.
+        state.pointing.picked = None;
     }
     response.context_menu(|ui| menu(state, index, ui));
+}
+
+/// The neurons of the list from one to another, whichever is above.
+fn between(rows: &[usize], from: usize, to: usize) -> Vec<usize> {
+    let place = |neuron: usize| rows.iter().position(|&row| row == neuron);
+    match (place(from), place(to)) {
+        (Some(a), Some(b)) => rows[a.min(b)..=a.max(b)].to_vec(),
+        _ => vec![to],
+    }
 }
 
 fn menu(state: &mut State, index: usize, ui: &mut egui::Ui) {

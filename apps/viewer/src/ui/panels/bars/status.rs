@@ -69,6 +69,9 @@ fn problems(state: &mut State, ui: &mut Ui) {
 const LOWERED: &str = "Full detail would block the window here. Hide or isolate neurons, or move closer, to get it back. \
     Saved pictures always have full detail.";
 
+const COMPLETES: &str =
+    "Full detail is drawn beside the window, and shows when it is there, unless something moves.";
+
 const THINNED: &str = "More synapses or points are in view than pixels, or a frame, can show: they are left out \
     evenly. Move closer to see all.";
 
@@ -99,7 +102,11 @@ fn lowered(state: &State, ui: &mut Ui) {
             Lowered::Triangles(_) => "reduced: fewer triangles".to_owned(),
             Lowered::Error(times) => format!("reduced: {times:.0} times as coarse"),
         };
-        ui.colored_label(warn, text).on_hover_text(LOWERED);
+        let (text, says) = match state.drawing.counters.completes {
+            true => (format!("{text}, drawing all"), COMPLETES),
+            false => (text, LOWERED),
+        };
+        ui.colored_label(warn, text).on_hover_text(says);
     }
     if let Some([drawn, in_view, _]) = state.drawing.counters.markers
         && drawn < in_view
