@@ -30,6 +30,7 @@ mod check;
 mod coarse;
 mod coarse_bytes;
 mod crossing;
+pub mod draco;
 mod face_types;
 mod forest;
 mod format;
