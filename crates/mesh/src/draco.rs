@@ -10,8 +10,8 @@
 //! merged, however close, so what was closed by its indices stays closed.
 
 use draco_core::{
-    DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType, Mesh, MeshEncoder,
-    PointAttribute,
+    DataType, DecodeLimits, DecoderBuffer, EncoderBuffer, EncoderOptions, FaceIndex,
+    GeometryAttributeType, Mesh, MeshDecoder, MeshEncoder, PointAttribute, PointIndex,
 };
 
 /// What an attribute means to those who read it.
@@ -140,6 +140,31 @@ pub enum DracoError {
     /// The encoder failed.
     #[error("Draco: {0}")]
     Encoder(String),
+    /// A stream that cannot be read, or would be far larger than it is.
+    #[error("Draco: {0}: compress the mesh anew")]
+    Decoder(String),
+}
+
+/// What a stream holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Decoded {
+    /// The triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Number of vertices.
+    pub vertices: usize,
+    /// The attributes, in the order of the stream.
+    pub attributes: Vec<DecodedAttribute>,
+}
+
+/// Numbers of the vertices of a decoded mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DecodedAttribute {
+    /// Its id in the stream.
+    pub id: u32,
+    /// Numbers of a vertex.
+    pub components: usize,
+    /// The numbers; `components` for each vertex.
+    pub values: Vec<f64>,
 }
 
 /// Level of the encoder, 0 to 10: more is smaller and slower.
@@ -261,207 +286,88 @@ fn point_attribute(
     Ok(made)
 }
 
+/// Most triangles for each byte of a stream, as of other files that are read. Plain ones have half of one.
+const TRIANGLES_PER_BYTE: u64 = 8;
+/// Most bytes of numbers for each byte of a stream: ten attributes of four bytes for each triangle.
+const NUMBERS_PER_BYTE: u64 = 40 * TRIANGLES_PER_BYTE;
+
+/// Reads a stream, this crate's or another's.
+///
+/// # Errors
+/// It is no stream of triangles, is cut off, or would give a mesh far larger than itself.
+pub fn decode(bytes: &[u8]) -> Result<Decoded, DracoError> {
+    let wrong = |error: draco_core::DracoError| DracoError::Decoder(error.to_string());
+    let length = bytes.len() as u64;
+    let limits = DecodeLimits::default()
+        .with_max_faces(TRIANGLES_PER_BYTE.saturating_mul(length))
+        .with_max_decoded_bytes(NUMBERS_PER_BYTE.saturating_mul(length));
+    let mut mesh = Mesh::new();
+    MeshDecoder::new()
+        .decode(
+            &mut DecoderBuffer::new(bytes).with_limits(limits),
+            &mut mesh,
+        )
+        .map_err(wrong)?;
+    let face = |number| mesh.face(FaceIndex(number)).map(|point| point.0);
+    let mut attributes = Vec::new();
+    for number in 0..mesh.num_attributes() {
+        let attribute = mesh.try_attribute(number).map_err(wrong)?;
+        attributes.push(DecodedAttribute {
+            id: attribute.unique_id(),
+            components: usize::from(attribute.num_components()),
+            values: numbers(attribute, mesh.num_points())?,
+        });
+    }
+    Ok(Decoded {
+        triangles: (0..mesh.num_faces() as u32).map(face).collect(),
+        vertices: mesh.num_points(),
+        attributes,
+    })
+}
+
+/// The numbers of all vertices.
+fn numbers(attribute: &PointAttribute, vertices: usize) -> Result<Vec<f64>, DracoError> {
+    let data_type = attribute.data_type();
+    let (width, components) = (
+        data_type.byte_length(),
+        usize::from(attribute.num_components()),
+    );
+    let mut element = vec![0; width * components];
+    let mut values = Vec::with_capacity(vertices.saturating_mul(components));
+    for vertex in 0..vertices as u32 {
+        let entry = attribute.mapped_index(PointIndex(vertex)).0 as usize;
+        if !attribute
+            .buffer()
+            .try_read(entry.saturating_mul(element.len()), &mut element)
+        {
+            return Err(DracoError::Decoder("numbers are missing".into()));
+        }
+        for bytes in element.chunks_exact(width) {
+            values.push(number(data_type, bytes)?);
+        }
+    }
+    Ok(values)
+}
+
+/// A number from as many bytes as its type has.
+fn number(data_type: DataType, bytes: &[u8]) -> Result<f64, DracoError> {
+    let mut wide = [0; 8];
+    wide[..bytes.len()].copy_from_slice(bytes);
+    let bits = u64::from_le_bytes(wide);
+    Ok(match data_type {
+        DataType::Uint8 | DataType::Uint16 | DataType::Uint32 | DataType::Bool => bits as f64,
+        DataType::Int8 => f64::from(bits as u8 as i8),
+        DataType::Int16 => f64::from(bits as u16 as i16),
+        DataType::Int32 => f64::from(bits as u32 as i32),
+        DataType::Float32 => f64::from(f32::from_bits(bits as u32)),
+        DataType::Float64 => f64::from_bits(bits),
+        other => {
+            return Err(DracoError::Decoder(format!("numbers of type {other:?}")));
+        }
+    })
+}
+
 #[expect(clippy::needless_pass_by_value, reason = "it goes to `map_err`")]
 fn failed(error: draco_core::DracoError) -> DracoError {
     DracoError::Encoder(error.to_string())
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use draco_core::{DecoderBuffer, FaceIndex, MeshDecoder, PointIndex};
-
-    use super::*;
-
-    /// A torus of 12 by 7 vertices: closed, and of a connectivity that EdgeBreaker must split.
-    fn torus() -> (Vec<[u32; 3]>, Vec<f32>) {
-        let (long, short) = (12_u32, 7_u32);
-        let mut positions = Vec::new();
-        let mut triangles = Vec::new();
-        for i in 0..long {
-            for j in 0..short {
-                let around = f32::from(i as u8) * std::f32::consts::TAU / long as f32;
-                let across = f32::from(j as u8) * std::f32::consts::TAU / short as f32;
-                let far = 3.0 + across.cos();
-                positions.extend([far * around.cos(), far * around.sin(), across.sin()]);
-                let at = |i: u32, j: u32| (i % long) * short + j % short;
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                triangles.extend([[a, b, c], [a, c, d]]);
-            }
-        }
-        (triangles, positions)
-    }
-
-    fn decoded(bytes: &[u8]) -> Mesh {
-        let mut mesh = Mesh::new();
-        let mut buffer = DecoderBuffer::new(bytes);
-        MeshDecoder::new().decode(&mut buffer, &mut mesh).unwrap();
-        mesh
-    }
-
-    fn corners(mesh: &Mesh) -> Vec<[u32; 3]> {
-        let face = |f| mesh.face(FaceIndex(f)).map(|point| point.0);
-        (0..mesh.num_faces() as u32).map(face).collect()
-    }
-
-    /// Components of each point, as stored.
-    fn numbers<const N: usize>(mesh: &Mesh, id: u32) -> Vec<[u8; N]> {
-        let attribute = mesh.attribute_by_unique_id(id).unwrap();
-        let of_point = |point| {
-            let mut bytes = [0; N];
-            let place = attribute.mapped_index(PointIndex(point)).0 as usize * N;
-            attribute.buffer().read(place, &mut bytes);
-            bytes
-        };
-        (0..mesh.num_points() as u32).map(of_point).collect()
-    }
-
-    /// Each triangle, from its smallest corner on.
-    fn sorted(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-        for triangle in &mut triangles {
-            let least = (0..3).min_by_key(|&i| triangle[i]).unwrap();
-            triangle.rotate_left(least);
-        }
-        triangles.sort_unstable();
-        triangles
-    }
-
-    #[test]
-    fn integers_and_triangles_come_back() {
-        let (triangles, positions) = torus();
-        let count = positions.len() / 3;
-        let number: Vec<u32> = (0..count as u32).map(|v| v * 51_130_563).collect();
-        let id: Vec<u16> = (0..count as u16).map(|v| v * 780).collect();
-        let kind: Vec<u8> = (0..count as u8).map(|v| v % 5).collect();
-        let signed: Vec<i32> = positions.iter().map(|p| (p * 1e5) as i32).collect();
-        let generic = |values| Attribute {
-            kind: AttributeKind::Generic,
-            components: 1,
-            values,
-            quantization: None,
-        };
-        let encoded = encode(
-            &triangles,
-            &[
-                generic(Values::U16(&id)),
-                Attribute {
-                    kind: AttributeKind::Position,
-                    components: 3,
-                    ..generic(Values::I32(&signed))
-                },
-                generic(Values::U8(&kind)),
-                generic(Values::U32(&number)),
-            ],
-        )
-        .unwrap();
-        let mesh = decoded(&encoded.bytes);
-        assert_eq!(
-            (mesh.num_points(), mesh.num_faces()),
-            (encoded.vertices, encoded.faces)
-        );
-        assert_eq!((encoded.vertices, encoded.faces), (count, triangles.len()));
-        let [ids, places, kinds, own] = encoded.attribute_ids[..] else {
-            panic!("four attributes");
-        };
-        let old: Vec<u32> = numbers::<2>(&mesh, ids)
-            .into_iter()
-            .map(|bytes| u32::from(u16::from_le_bytes(bytes)) / 780)
-            .collect();
-        for (new, &old) in old.iter().enumerate() {
-            let old = old as usize;
-            assert_eq!(numbers::<1>(&mesh, kinds)[new], [kind[old]]);
-            assert_eq!(numbers::<4>(&mesh, own)[new], number[old].to_le_bytes());
-            let place = signed[3 * old..3 * old + 3]
-                .iter()
-                .flat_map(|p| p.to_le_bytes());
-            let place: Vec<u8> = place.collect();
-            assert_eq!(numbers::<12>(&mesh, places)[new][..], place);
-        }
-        let renumbered = corners(&mesh)
-            .into_iter()
-            .map(|t| t.map(|corner| old[corner as usize]))
-            .collect();
-        assert_eq!(sorted(renumbered), sorted(triangles));
-    }
-
-    #[test]
-    fn rounded_floats_are_near_and_the_surface_is_closed() {
-        let (triangles, positions) = torus();
-        let normals: Vec<f32> = positions.iter().map(|_| 1.0 / 3_f32.sqrt()).collect();
-        let float = |kind, values, bits| Attribute {
-            kind,
-            components: 3,
-            values: Values::F32(values),
-            quantization: Some(bits),
-        };
-        let encoded = encode(
-            &triangles,
-            &[
-                float(AttributeKind::Position, &positions, 16),
-                float(AttributeKind::Normal, &normals, 10),
-            ],
-        )
-        .unwrap();
-        let mesh = decoded(&encoded.bytes);
-        let places = numbers::<12>(&mesh, encoded.attribute_ids[0]);
-        let step = 8.0 / 65_535.0;
-        for place in places {
-            let new: Vec<f32> = place
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .map(|&bytes| f32::from_le_bytes(bytes))
-                .collect();
-            let near = |old: &[f32]| (0..3).all(|i| (old[i] - new[i]).abs() <= 0.51 * step);
-            assert!(positions.as_chunks::<3>().0.iter().any(|old| near(old)));
-        }
-        let mut edges = BTreeMap::new();
-        for [a, b, c] in corners(&mesh) {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                *edges.entry((from, to)).or_insert(0) += 1;
-            }
-        }
-        assert!(
-            edges
-                .iter()
-                .all(|(&(from, to), &count)| count == 1 && edges.get(&(to, from)) == Some(&1))
-        );
-    }
-
-    #[test]
-    fn what_does_not_fit_together_is_refused() {
-        let (triangles, positions) = torus();
-        let place = Attribute {
-            kind: AttributeKind::Position,
-            components: 3,
-            values: Values::F32(&positions),
-            quantization: Some(14),
-        };
-        let error = |triangles: &[[u32; 3]], attributes: &[Attribute<'_>]| {
-            encode(triangles, attributes).unwrap_err().to_string()
-        };
-        assert_eq!(error(&[], &[place]), "the mesh has no triangles");
-        assert_eq!(
-            error(&[[0, 1, 84]], &[place]),
-            "triangle 0 has vertex 84, there are 84"
-        );
-        let short = Attribute {
-            kind: AttributeKind::Generic,
-            components: 1,
-            values: Values::U8(&[1, 2]),
-            quantization: None,
-        };
-        assert_eq!(
-            error(&triangles, &[place, short]),
-            "attribute 1 has 2 numbers, 84 are needed"
-        );
-        assert!(error(&triangles, &[]).contains("there is none of positions"));
-        let lost = [f32::NAN; 252];
-        let lost = Attribute {
-            values: Values::F32(&lost),
-            ..place
-        };
-        assert!(error(&triangles, &[lost]).contains("not finite"));
-    }
 }

@@ -1,6 +1,7 @@
 //! Meshes, their files and checks.
 
 mod attributes;
+mod draco;
 mod fuzz;
 mod independent;
 mod intersect;
