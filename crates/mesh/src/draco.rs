@@ -36,6 +36,8 @@ pub enum Values<'a> {
     F32(&'a [f32]),
     /// Signed integers.
     I32(&'a [i32]),
+    /// Signed integers of 16 bits.
+    I16(&'a [i16]),
     /// Bytes.
     U8(&'a [u8]),
     /// Unsigned integers below 65,536.
@@ -49,6 +51,7 @@ impl Values<'_> {
         match self {
             Self::F32(values) => values.len(),
             Self::I32(values) => values.len(),
+            Self::I16(values) => values.len(),
             Self::U8(values) => values.len(),
             Self::U16(values) => values.len(),
             Self::U32(values) => values.len(),
@@ -59,6 +62,7 @@ impl Values<'_> {
         match self {
             Self::F32(_) => DataType::Float32,
             Self::I32(_) => DataType::Int32,
+            Self::I16(_) => DataType::Int16,
             Self::U8(_) => DataType::Uint8,
             Self::U16(_) => DataType::Uint16,
             Self::U32(_) => DataType::Uint32,
@@ -69,6 +73,7 @@ impl Values<'_> {
         match self {
             Self::F32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::I32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Self::I16(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::U8(values) => values.to_vec(),
             Self::U16(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::U32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
@@ -91,7 +96,7 @@ pub struct Attribute<'a> {
 }
 
 /// A compressed mesh.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Encoded {
     /// The stream, as in a `.drc` file.
     pub bytes: Vec<u8>,
@@ -101,6 +106,8 @@ pub struct Encoded {
     pub vertices: usize,
     /// Triangles that a decoder makes.
     pub faces: usize,
+    /// Least and greatest coordinates that a decoder makes of positions that are floats.
+    pub bounds: Option<[[f32; 3]; 2]>,
 }
 
 /// Why a mesh could not be compressed.
@@ -197,9 +204,16 @@ pub fn encode(triangles: &[[u32; 3]], attributes: &[Attribute<'_>]) -> Result<En
     let info = encoder
         .encode_with_info(&options, &mut out)
         .map_err(failed)?;
+    let corner = |bound: &Option<Vec<f64>>| {
+        let bound = bound.as_ref()?.iter().map(|&coordinate| coordinate as f32);
+        <[f32; 3]>::try_from(bound.collect::<Vec<_>>()).ok()
+    };
+    let mut bounds = info.attributes.iter();
+    let bounds = bounds.find_map(|a| Some([corner(&a.position_min)?, corner(&a.position_max)?]));
     Ok(Encoded {
         bytes: out.data().to_vec(),
         attribute_ids,
+        bounds,
         vertices: info.num_encoded_points,
         faces: info.num_encoded_faces,
     })

@@ -1,6 +1,6 @@
 //! GLB, glTF 2.0: <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 //!
-//! Vertices are interleaved, 40 bytes each, so that one pass over the surface writes them. The
+//! Vertices are interleaved, 40 bytes each, 48 with colors, so that one pass over the surface writes them. The
 //! bounds that glTF asks for are known only after it: the JSON comes first in the file, therefore
 //! it gets room for the longest numbers and is written last. Several surfaces follow one another in the
 //! binary chunk; nodes show each where it stands, as often as they like.
@@ -11,19 +11,20 @@
 //! look first: a pass over the vertices takes two fifths of writing.
 
 mod document;
+mod draco;
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{File, WriteError, push_numbers, record, split};
+use super::{Compression, File, WriteError, WriteOptions, push_numbers, record, split};
 use crate::face_types::{TypesOfGroups, VertexTypes};
 use crate::{Faces, Format, Surface};
-use document::document;
+use document::{COLOR, document};
 
-/// Bytes of a vertex.
-const STRIDE: u64 = 40;
+/// Bytes of a vertex, and of one with a color, which is padded to a multiple of 4.
+const STRIDES: [u64; 2] = [40, 48];
 
 /// Types of a surface that the JSON has room for in any case: as many as have names in SWC.
 const ROOM: usize = 5;
@@ -43,12 +44,12 @@ pub struct GlbNode {
 }
 
 /// A name as glTF wants those that are not its own, unless another attribute has it.
-fn gltf_name(name: &str, others: &[OwnSpan]) -> String {
-    if name == "COLOR_0" {
+fn gltf_name(name: &str, others: &[String]) -> String {
+    if name == COLOR {
         return name.into();
     }
     let mut upper = format!("_{}", name.to_uppercase());
-    while others.iter().any(|other| other.gltf_name == upper) {
+    while others.contains(&upper) {
         upper.push('_');
     }
     upper
@@ -65,6 +66,8 @@ struct OwnSpan {
 /// Where the arrays of a surface lie in the binary chunk.
 struct Span {
     vertices: u64,
+    /// Bytes of a vertex.
+    stride: u64,
     first_vertex: u64,
     indices: u64,
     first_index: u64,
@@ -78,7 +81,7 @@ struct Span {
 
 pub(super) fn write(
     surface: &dyn Surface,
-    materials: bool,
+    options: &WriteOptions,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
     let here = GlbNode {
@@ -86,16 +89,21 @@ pub(super) fn write(
         surface: 0,
         world_from_surface: DAffine3::IDENTITY,
     };
-    write_all(&[surface], &[here], materials, file)
+    write_all(&[surface], &[here], options, file)
 }
 
 /// Writes surfaces with the nodes that show them.
 pub(super) fn write_all(
     surfaces: &[&dyn Surface],
     nodes: &[GlbNode],
-    materials: bool,
+    options: &WriteOptions,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
+    if let Some(Compression::Draco) = options.compression {
+        return draco::write(surfaces, nodes, options, file);
+    }
+    let materials = options.glb_materials;
+    let stride = STRIDES[usize::from(options.color_by.is_some())];
     let mut spans = Vec::new();
     let mut binary = 0;
     for surface in surfaces {
@@ -104,12 +112,13 @@ pub(super) fn write_all(
         // As many as there is room for, with the longest name.
         let kinds = (i32::MIN..).take(if materials { ROOM } else { 0 });
         let first_vertex = binary;
-        binary += STRIDE * vertices + 12 * faces;
-        let mut own = Vec::new();
+        binary += stride * vertices + 12 * faces;
+        let mut own: Vec<OwnSpan> = Vec::new();
         for a in surface.attributes() {
+            let others: Vec<String> = own.iter().map(|own| own.gltf_name.clone()).collect();
             own.push(OwnSpan {
                 name: a.name.to_owned(),
-                gltf_name: gltf_name(a.name, &own),
+                gltf_name: gltf_name(a.name, &others),
                 components: a.components,
                 start: binary,
             });
@@ -117,9 +126,10 @@ pub(super) fn write_all(
         }
         spans.push(Span {
             vertices,
+            stride,
             first_vertex,
             indices: 3 * faces,
-            first_index: first_vertex + STRIDE * vertices,
+            first_index: first_vertex + stride * vertices,
             bounds: [Vec3::ZERO; 2],
             own,
             kinds: kinds.map(|kind| (kind, 3 * faces)).collect(),
@@ -141,7 +151,7 @@ pub(super) fn write_all(
             });
         };
         for (surface, span) in surfaces.iter().zip(&mut spans) {
-            write_surface(*surface, start, materials, span, file)?;
+            write_surface(*surface, start, options, span, file)?;
         }
         let json = document(&spans, &origins, nodes).to_string();
         if json.len() as u64 > json_bytes {
@@ -165,10 +175,11 @@ pub(super) fn write_all(
 fn write_surface(
     surface: &dyn Surface,
     start: u64,
-    materials: bool,
+    options: &WriteOptions,
     span: &mut Span,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
+    let materials = options.glb_materials;
     let bounds = Mutex::new([Vec3::INFINITY, Vec3::NEG_INFINITY]);
     let types = TypesOfGroups::default();
     file.vertices_of_blocks(
@@ -179,13 +190,17 @@ fn write_surface(
                 types.add(&blocks, group);
             }
             let mut mine = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-            bytes.reserve(STRIDE as usize * group.len());
+            bytes.reserve(span.stride as usize * group.len());
             for v in group {
                 let (p, n) = (v.position, v.normal);
                 mine = [mine[0].min(p), mine[1].max(p)];
                 bytes.extend_from_slice(&record![40;
                 p.x, p.y, p.z, n.x, n.y, n.z,
                 v.kind as f32, v.point as f32, v.section as f32, v.radius]);
+                if let Some(by) = options.color_by {
+                    let [r, g, b] = by.light(v);
+                    bytes.extend_from_slice(&record![8; r, g, b, 0u16]);
+                }
             }
             let mut bounds = bounds.lock().unwrap_or_else(PoisonError::into_inner);
             *bounds = [bounds[0].min(mine[0]), bounds[1].max(mine[1])];
