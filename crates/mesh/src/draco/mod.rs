@@ -1,18 +1,19 @@
 //! Draco, [the compression of meshes](https://google.github.io/draco/spec/) that glTF and neuroglancer read: triangles by
 //! EdgeBreaker, numbers predicted from their neighbors.
 //!
-//! The only file that knows the crate `draco-core`, which is young and by one author: it is pinned, and what is asked of
-//! it is here.
+//! What others read and write by is in the crate `draco-core`, which is young and by one author: it is pinned, and one file
+//! knows it (`coder.rs`). Without the feature `draco`, nothing is compressed, and what is cannot be read.
 //!
 //! Integers come back as they were. Floats are rounded to the steps of their quantization, or kept as they are, which
 //! compresses nothing. **The order changes**: EdgeBreaker walks over the surface, and numbers vertices and triangles by
 //! its way. A vertex where several fans of triangles meet becomes several, one without triangles is lost; none are
 //! merged, however close, so what was closed by its indices stays closed.
 
-use draco_core::{
-    DataType, DecodeLimits, DecoderBuffer, EncoderBuffer, EncoderOptions, FaceIndex,
-    GeometryAttributeType, Mesh, MeshDecoder, MeshEncoder, PointAttribute, PointIndex,
-};
+#[cfg(feature = "draco")]
+mod coder;
+#[cfg(not(feature = "draco"))]
+#[path = "absent.rs"]
+mod coder;
 
 /// What an attribute means to those who read it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,28 +56,6 @@ impl Values<'_> {
             Self::U8(values) => values.len(),
             Self::U16(values) => values.len(),
             Self::U32(values) => values.len(),
-        }
-    }
-
-    fn data_type(&self) -> DataType {
-        match self {
-            Self::F32(_) => DataType::Float32,
-            Self::I32(_) => DataType::Int32,
-            Self::I16(_) => DataType::Int16,
-            Self::U8(_) => DataType::Uint8,
-            Self::U16(_) => DataType::Uint16,
-            Self::U32(_) => DataType::Uint32,
-        }
-    }
-
-    fn bytes(&self) -> Vec<u8> {
-        match self {
-            Self::F32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::I32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::I16(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::U8(values) => values.to_vec(),
-            Self::U16(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::U32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
         }
     }
 }
@@ -144,6 +123,9 @@ pub enum DracoError {
         /// Vertices that there are.
         vertices: usize,
     },
+    /// The feature `draco` is off.
+    #[error("this build has no Draco: use one that has")]
+    Absent,
     /// The encoder failed.
     #[error("Draco: {0}")]
     Encoder(String),
@@ -174,49 +156,21 @@ pub struct DecodedAttribute {
     pub values: Vec<f64>,
 }
 
-/// Level of the encoder, 0 to 10: more is smaller and slower.
-const LEVEL: i32 = 6;
-
 /// Compresses a mesh of triangles. The result depends on nothing but what is given.
 ///
 /// # Errors
 /// If there are no triangles, no position, or what is given does not fit together.
 pub fn encode(triangles: &[[u32; 3]], attributes: &[Attribute<'_>]) -> Result<Encoded, DracoError> {
     let vertices = checked(triangles, attributes)?;
-    let mut mesh = Mesh::new();
-    mesh.set_num_points(vertices);
-    let mut options = EncoderOptions::new();
-    options.set_compression_level(LEVEL);
-    let mut attribute_ids = Vec::new();
-    for attribute in attributes {
-        let id = mesh.add_attribute(point_attribute(attribute, vertices)?);
-        if let (Values::F32(_), Some(bits)) = (attribute.values, attribute.quantization) {
-            options.set_attribute_quantization(id, i32::from(bits));
-        }
-        attribute_ids.push(mesh.attribute(id).unique_id());
-    }
-    // Without their number, faces are left out and nothing is said.
-    mesh.try_set_num_faces(triangles.len()).map_err(failed)?;
-    mesh.set_faces_from_flat_indices(triangles.as_flattened());
-    let mut encoder = MeshEncoder::new();
-    encoder.set_mesh(mesh);
-    let mut out = EncoderBuffer::new();
-    let info = encoder
-        .encode_with_info(&options, &mut out)
-        .map_err(failed)?;
-    let corner = |bound: &Option<Vec<f64>>| {
-        let bound = bound.as_ref()?.iter().map(|&coordinate| coordinate as f32);
-        <[f32; 3]>::try_from(bound.collect::<Vec<_>>()).ok()
-    };
-    let mut bounds = info.attributes.iter();
-    let bounds = bounds.find_map(|a| Some([corner(&a.position_min)?, corner(&a.position_max)?]));
-    Ok(Encoded {
-        bytes: out.data().to_vec(),
-        attribute_ids,
-        bounds,
-        vertices: info.num_encoded_points,
-        faces: info.num_encoded_faces,
-    })
+    coder::encode(triangles, attributes, vertices)
+}
+
+/// Reads a stream, this crate's or another's.
+///
+/// # Errors
+/// It is no stream of triangles, is cut off, or would give a mesh far larger than itself.
+pub fn decode(bytes: &[u8]) -> Result<Decoded, DracoError> {
+    coder::decode(bytes)
 }
 
 /// The number of vertices.
@@ -280,108 +234,4 @@ fn checked(triangles: &[[u32; 3]], attributes: &[Attribute<'_>]) -> Result<usize
         }
     }
     Ok(vertices)
-}
-
-fn point_attribute(
-    attribute: &Attribute<'_>,
-    vertices: usize,
-) -> Result<PointAttribute, DracoError> {
-    let kind = match attribute.kind {
-        AttributeKind::Position => GeometryAttributeType::Position,
-        AttributeKind::Normal => GeometryAttributeType::Normal,
-        AttributeKind::Color => GeometryAttributeType::Color,
-        AttributeKind::Generic => GeometryAttributeType::Generic,
-    };
-    let mut made = PointAttribute::new();
-    let data_type = attribute.values.data_type();
-    made.try_init(kind, attribute.components as u8, data_type, false, vertices)
-        .map_err(failed)?;
-    made.buffer_mut().write(0, &attribute.values.bytes());
-    Ok(made)
-}
-
-/// Most triangles for each byte of a stream, as of other files that are read. Plain ones have half of one.
-const TRIANGLES_PER_BYTE: u64 = 8;
-/// Most bytes of numbers for each byte of a stream: ten attributes of four bytes for each triangle.
-const NUMBERS_PER_BYTE: u64 = 40 * TRIANGLES_PER_BYTE;
-
-/// Reads a stream, this crate's or another's.
-///
-/// # Errors
-/// It is no stream of triangles, is cut off, or would give a mesh far larger than itself.
-pub fn decode(bytes: &[u8]) -> Result<Decoded, DracoError> {
-    let wrong = |error: draco_core::DracoError| DracoError::Decoder(error.to_string());
-    let length = bytes.len() as u64;
-    let limits = DecodeLimits::default()
-        .with_max_faces(TRIANGLES_PER_BYTE.saturating_mul(length))
-        .with_max_decoded_bytes(NUMBERS_PER_BYTE.saturating_mul(length));
-    let mut mesh = Mesh::new();
-    MeshDecoder::new()
-        .decode(
-            &mut DecoderBuffer::new(bytes).with_limits(limits),
-            &mut mesh,
-        )
-        .map_err(wrong)?;
-    let face = |number| mesh.face(FaceIndex(number)).map(|point| point.0);
-    let mut attributes = Vec::new();
-    for number in 0..mesh.num_attributes() {
-        let attribute = mesh.try_attribute(number).map_err(wrong)?;
-        attributes.push(DecodedAttribute {
-            id: attribute.unique_id(),
-            components: usize::from(attribute.num_components()),
-            values: numbers(attribute, mesh.num_points())?,
-        });
-    }
-    Ok(Decoded {
-        triangles: (0..mesh.num_faces() as u32).map(face).collect(),
-        vertices: mesh.num_points(),
-        attributes,
-    })
-}
-
-/// The numbers of all vertices.
-fn numbers(attribute: &PointAttribute, vertices: usize) -> Result<Vec<f64>, DracoError> {
-    let data_type = attribute.data_type();
-    let (width, components) = (
-        data_type.byte_length(),
-        usize::from(attribute.num_components()),
-    );
-    let mut element = vec![0; width * components];
-    let mut values = Vec::with_capacity(vertices.saturating_mul(components));
-    for vertex in 0..vertices as u32 {
-        let entry = attribute.mapped_index(PointIndex(vertex)).0 as usize;
-        if !attribute
-            .buffer()
-            .try_read(entry.saturating_mul(element.len()), &mut element)
-        {
-            return Err(DracoError::Decoder("numbers are missing".into()));
-        }
-        for bytes in element.chunks_exact(width) {
-            values.push(number(data_type, bytes)?);
-        }
-    }
-    Ok(values)
-}
-
-/// A number from as many bytes as its type has.
-fn number(data_type: DataType, bytes: &[u8]) -> Result<f64, DracoError> {
-    let mut wide = [0; 8];
-    wide[..bytes.len()].copy_from_slice(bytes);
-    let bits = u64::from_le_bytes(wide);
-    Ok(match data_type {
-        DataType::Uint8 | DataType::Uint16 | DataType::Uint32 | DataType::Bool => bits as f64,
-        DataType::Int8 => f64::from(bits as u8 as i8),
-        DataType::Int16 => f64::from(bits as u16 as i16),
-        DataType::Int32 => f64::from(bits as u32 as i32),
-        DataType::Float32 => f64::from(f32::from_bits(bits as u32)),
-        DataType::Float64 => f64::from_bits(bits),
-        other => {
-            return Err(DracoError::Decoder(format!("numbers of type {other:?}")));
-        }
-    })
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "it goes to `map_err`")]
-fn failed(error: draco_core::DracoError) -> DracoError {
-    DracoError::Encoder(error.to_string())
 }
