@@ -1,5 +1,7 @@
 //! What files say of the looks of a surface: colors of vertices, and a material for each type, as in pictures.
 
+use std::str::FromStr;
+
 use crate::palette::{Palette, Rgb, linear};
 use crate::{SurfaceVertex, WALL};
 
@@ -12,6 +14,16 @@ pub enum ColorBy {
 }
 
 impl ColorBy {
+    /// All of them.
+    pub const ALL: [Self; 1] = [Self::Type];
+
+    /// Its name, as options have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Type => "type",
+        }
+    }
+
     /// The color of a vertex.
     pub(super) fn of(self, vertex: &SurfaceVertex) -> Rgb {
         match self {
@@ -31,6 +43,36 @@ impl ColorBy {
 pub enum Compression {
     /// By [Draco](crate::draco); a GLB tells its readers by `KHR_draco_mesh_compression`.
     Draco,
+}
+
+impl Compression {
+    /// All of them.
+    pub const ALL: [Self; 1] = [Self::Draco];
+
+    /// Its name, as options have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Draco => "draco",
+        }
+    }
+}
+
+impl FromStr for ColorBy {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|by| by.name() == name);
+        found.ok_or_else(|| "files have colors by type".into())
+    }
+}
+
+impl FromStr for Compression {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|by| by.name() == name);
+        found.ok_or_else(|| "use draco".into())
+    }
 }
 
 /// What a file tells beside the surface itself.

@@ -2,7 +2,7 @@
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_draco_mesh_compression>.
 //!
 //! **Theory.** A primitive is one stream, which holds its triangles and all numbers of its vertices. What is whole numbers
-//! stays so: integers are exact, and smaller than floats of 12 bits, by which `_POINT` would be off by 2.4 in a cell of
+//! stays so: integers are exact, and smaller than floats of 12 bits, by which `_POINT` would have steps of 1.2 in a cell of
 //! 5,000 points. The steps that positions are rounded to follow from the finest edges: with 14 bits, as others round, a
 //! third of the triangles of a cell with a long axon have no area.
 //!
@@ -27,8 +27,10 @@ const RADIUS_BITS: u8 = 16;
 const OWN_BITS: u8 = 24;
 /// Bits of coordinates, at least and at most.
 const POSITION_BITS: [u8; 2] = [16, 24];
-/// Steps that the finest edges have, but for one in [`FINEST`].
-const STEPS: f32 = 4.0;
+/// Steps that the finest edges have, but for one in [`FINEST`]. With 2, 4, 8 and 16 a cell of 5,000 points has 177, 8, 2 and 0
+/// triangles without area of 703,824, and its area is 0.4, 0.09, 0.02 and 0.006 % too large; each doubling adds a tenth to
+/// the file.
+const STEPS: f32 = 8.0;
 /// Edges among which one may be finer.
 const FINEST: usize = 100;
 
