@@ -157,10 +157,17 @@ fn a_compressed_glb_is_closed_and_has_all_in_fewer_bytes() {
         assert_eq!(report[0][key], report[1][key], "{key}");
     }
     assert_eq!(report[1]["closed"], true);
-    // Another file, made anew.
-    let resumed = "mesh cell.swc -o small.glb --compress draco --resume --json";
-    let json = work.run(resumed).exits(0).json();
-    assert_ne!(json[0]["skipped"], true);
+    // Other options, another file.
+    let skipped = |options: &str| {
+        let run = work.run(&format!(
+            "mesh cell.swc -o again.glb --resume --json {options}"
+        ));
+        run.exits(0).json()[0]["skipped"] == true
+    };
+    assert!(!skipped(""));
+    assert!(!skipped("--compress draco"));
+    assert!(skipped("--compress draco"));
+    assert!(!skipped("--compress draco --color-by type"));
 }
 
 #[neurotess_testing::test]
