@@ -115,9 +115,9 @@ impl Arrays {
             "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
             "_SECTION": first + 4, "_RADIUS": first + 5,
         });
-        let are_made = span.stride != STRIDES[0];
-        let has_colors = are_made || span.own.iter().any(|own| own.gltf_name == COLOR);
-        if are_made {
+        // Those of one's own are given no material: trimesh shows no colors beside one.
+        let has_colors = span.stride != STRIDES[0];
+        if has_colors {
             attributes[COLOR] = json!(self.accessors.len());
             self.accessors.push(json!({
                 "bufferView": view, "byteOffset": STRIDES[0], "componentType": UNSIGNED_SHORT,

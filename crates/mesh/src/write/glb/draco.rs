@@ -328,7 +328,7 @@ impl Arrays {
         self.accessors.push(json!({
             "componentType": UNSIGNED_INT, "count": 3 * stream.faces, "type": "SCALAR",
         }));
-        let is_colored = columns.iter().any(|c| c.kind == AttributeKind::Color);
+        let is_colored = columns.iter().any(|column| column.normalized);
         let mut primitive: Value = json!({
             "attributes": attributes, "indices": indices, "mode": TRIANGLES,
             "extensions": { "KHR_draco_mesh_compression": { "bufferView": view, "attributes": ids } },
