@@ -188,7 +188,8 @@ def main() -> None:
         sizes,
     )
     parts = ["EM to cones", "EM to ours", "ours to cones"]
-    table(["neuron", *(f"{parts[0]}, {n}" for n in three), "signed", *(f"{part}, {n}" for part in parts[1:] for n in three)], split)
+    others = (f"{part}, {n}" for part in parts[1:] for n in three)
+    table(["neuron", *(f"{parts[0]}, {n}" for n in three), "signed", *others], split)
     regions = []
     for region, where in enumerate(["along neurites", "at forks", "soma"]):
         found = [np.concatenate(of) for of in zip(*of_regions[region], strict=True)]
