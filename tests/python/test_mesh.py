@@ -123,7 +123,7 @@ def test_no_option_of_the_command_is_missing() -> None:
     import inspect
     import re
 
-    files = {"out", "force", "format", "unit", "walls", "table", "areas", "materials", "parts"}
+    files = {"out", "force", "format", "unit", "walls", "table", "areas", "materials", "parts", "color_by", "compress"}
     files |= {"shard", "resume", "log", "strict", "help"}
     common = {"json", "quiet", "verbose", "no_progress", "color", "allow_large"}
     circuit = {"nodes", "node_set", "population", "region", "sample", "sample_seed"}
@@ -204,6 +204,27 @@ def test_every_format_is_written_and_read_back(mesh: nt.Mesh, tmp_path: Path) ->
     assert b'"materials"' not in (tmp_path / "mesh.glb").read_bytes()
     with pytest.raises(ValueError, match="ply knows no materials"):
         mesh.save(tmp_path / "x.ply", materials=True)
+    for extension in ("glb", "ply", "vtu"):
+        mesh.save(tmp_path / f"by_type.{extension}", color_by="type")
+    by_type = nt.read_mesh(tmp_path / "by_type.vtu")
+    assert len(np.unique(by_type.attributes["RGB"], axis=0)) == len(np.unique(mesh.type))
+    assert {"red", "green", "blue"} <= set(nt.read_mesh(tmp_path / "by_type.ply").attributes)
+    assert b"COLOR_0" in (tmp_path / "by_type.glb").read_bytes()
+    mesh.save(tmp_path / "small.glb", compress="draco", color_by="type")
+    small = nt.read_mesh(tmp_path / "small.glb")
+    assert small.closed and small.volume == pytest.approx(mesh.volume, rel=1e-3)
+    assert (np.sort(small.point) == np.sort(mesh.point)).all()
+    assert 6 * (tmp_path / "small.glb").stat().st_size < (tmp_path / "mesh.glb").stat().st_size
+    for wrong, told in [
+        ({"compress": "draco", "path": "x.ply"}, "only glb is compressed"),
+        ({"compress": "zip", "path": "x.glb"}, "compress='zip': use draco"),
+        ({"color_by": "type", "path": "x.stl"}, "stl has no colors of vertices"),
+        ({"color_by": "type", "color": "radius", "path": "x.glb"}, "both give colors"),
+        ({"compress": "draco", "materials": True, "path": "x.glb"}, "use color_by"),
+    ]:
+        name = str(wrong.pop("path"))
+        with pytest.raises(ValueError, match=told):
+            mesh.save(tmp_path / name, **wrong)  # type: ignore[arg-type]
     mesh.save(tmp_path / "meters.ply", unit="m")
     assert nt.read_mesh(tmp_path / "meters.ply").volume == pytest.approx(mesh.volume * 1e-18, rel=1e-3)
     with pytest.raises(ValueError, match="unit='mm'"):

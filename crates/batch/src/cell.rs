@@ -166,7 +166,7 @@ fn write(
     listeners: Listeners<'_>,
     seconds: &mut Seconds,
 ) -> Result<WrittenFiles, CellFault> {
-    let large = surface.with(|surface| size::check(surface, options.files.format, &job.out));
+    let large = surface.with(|surface| size::check(surface, &options.files, &job.out));
     let large = large.map_err(|crowded| match crowded {
         Crowded::Memory(error) => CellFault::Memory(error),
         Crowded::Disk {

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use neurotess_mesh::Unit;
+use neurotess_mesh::{ColorBy, Compression, Unit};
 use neurotess_recipe::{FileOptions, MESHES, MeshOptions, NamedOptions, OptionsError};
 use serde::Serialize;
 
@@ -25,6 +25,10 @@ pub(crate) struct Key {
     meters: bool,
     walls: bool,
     materials: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    color_by: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    compress: Option<&'static str>,
     parts: bool,
 }
 
@@ -49,6 +53,8 @@ impl Key {
             unit,
             walls,
             materials,
+            color_by,
+            compress,
             parts,
             ..
         } = *files;
@@ -60,6 +66,8 @@ impl Key {
             meters: unit == Unit::Meter,
             walls,
             materials,
+            color_by: color_by.map(ColorBy::name),
+            compress: compress.map(Compression::name),
             parts,
         })
     }
@@ -121,7 +129,7 @@ mod tests {
         let usual = hash(&|_, _, _| {});
         assert_eq!(hash(&|_, _, job| job.input = "moved/a.swc".into()), usual);
         assert_eq!(hash(&|_, _, job| job.out = "b.ply".into()), usual);
-        let others: [&Change; 23] = [
+        let others: [&Change; 25] = [
             &|o, _, _| o.levels = Levels::Coarse,
             &|o, _, _| o.levels = Levels::Criterion(LodCriterion::Homogeneous(5)),
             &|o, _, _| o.levels = Levels::Criterion(LodCriterion::MaxError(0.05)),
@@ -141,6 +149,8 @@ mod tests {
             &|_, f, _| f.unit = Unit::Meter,
             &|_, f, _| f.walls = true,
             &|_, f, _| f.materials = true,
+            &|_, f, _| f.color_by = Some(ColorBy::Type),
+            &|_, f, _| f.compress = Some(Compression::Draco),
             &|_, f, _| f.parts = true,
             &|_, _, job| job.input = "in/b.swc".into(),
             &|_, _, job| job.placement = "0 0 0".into(),

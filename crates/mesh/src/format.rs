@@ -85,6 +85,11 @@ impl Format {
         matches!(self, Self::Msh | Self::Msh2 | Self::Poly | Self::Smesh)
     }
 
+    /// Whether files of this format have colors of vertices.
+    pub fn has_colors(self) -> bool {
+        matches!(self, Self::Ply | Self::Vtu | Self::Glb)
+    }
+
     /// Whether files of this format can hold quads.
     pub fn has_quads(self) -> bool {
         matches!(self, Self::Ply | Self::Obj | Self::Off | Self::Vtu)

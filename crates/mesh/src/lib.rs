@@ -30,6 +30,7 @@ mod check;
 mod coarse;
 mod coarse_bytes;
 mod crossing;
+pub mod draco;
 mod face_types;
 mod forest;
 mod format;
@@ -91,4 +92,7 @@ pub use walls::{Walled, with_walls};
 pub use watch::{Progress, Stage, Stopped, Watch};
 pub use watched::Watched;
 pub use weld::merge_identical;
-pub use write::{GlbNode, WriteError, WriteOptions, obj_materials, write, write_glb, write_with};
+pub use write::{
+    ColorBy, Compression, GlbNode, WriteError, WriteOptions, obj_materials, write, write_glb,
+    write_with,
+};

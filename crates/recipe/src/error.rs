@@ -66,6 +66,12 @@ pub enum OptionsError {
     WalledQuads,
     /// A format without materials.
     NoMaterials(Format),
+    /// A format without colors of vertices.
+    NoColors(Format),
+    /// A format that is not compressed.
+    NoCompression(Format),
+    /// Materials where triangles are compressed.
+    CompressedMaterials,
     /// A value that has no name.
     Unnamed(MeshOption),
 }
@@ -152,6 +158,23 @@ impl OptionsError {
             ),
             Self::NoMaterials(format) => format!(
                 "{format} knows no materials: leave out {}, or write obj or glb",
+                name(O::Materials)
+            ),
+            Self::NoColors(format) => format!(
+                "{format} has no colors of vertices: leave out {}{}, or write glb, ply or vtu",
+                name(O::ColorBy),
+                match format {
+                    Format::Obj => format!(", use {}", name(O::Materials)),
+                    _ => String::new(),
+                }
+            ),
+            Self::NoCompression(format) => format!(
+                "only glb is compressed, {format} is not: leave out {}, or write glb",
+                name(O::Compress)
+            ),
+            Self::CompressedMaterials => format!(
+                "compressed types could not share their vertices, and the mesh would not be closed: use {} instead of {}",
+                O::ColorBy.set_to("type", spelling),
                 name(O::Materials)
             ),
             Self::Unnamed(option) => format!("this value of {} has no name", name(*option)),

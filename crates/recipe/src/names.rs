@@ -35,6 +35,8 @@ pub enum MeshOption {
     Unit,
     Walls,
     Materials,
+    ColorBy,
+    Compress,
     Parts,
 }
 
@@ -123,6 +125,8 @@ impl MeshOption {
             Self::Unit => "unit",
             Self::Walls => "walls",
             Self::Materials => "materials",
+            Self::ColorBy => "color_by",
+            Self::Compress => "compress",
             Self::Parts => "parts",
         }
     }
@@ -160,6 +164,8 @@ impl MeshOption {
             | Self::Unit
             | Self::Walls
             | Self::Materials
+            | Self::ColorBy
+            | Self::Compress
             | Self::Parts => self.keyword(),
         }
     }

@@ -8,7 +8,7 @@ import warnings
 from . import _neurotess
 from ._errors import NeurotessWarning
 from ._units import plain
-from ._own import check_name, color_column, holds_own, own_arrays, own_column
+from ._own import COLORS, check_name, color_column, holds_own, own_arrays, own_column
 from ._parts import Notice
 from ._packages import needed
 from ._sources import arrays_of, is_surface
@@ -300,6 +300,8 @@ class Mesh:
         unit: Literal["um", "m"] = "um",
         overwrite: bool = True,
         materials: bool = False,
+        color_by: Literal["type"] | None = None,
+        compress: Literal["draco"] | None = None,
         color: str | None = None,
         colormap: Colormap = "viridis",
         range: tuple[float, float] | None = None,
@@ -310,7 +312,11 @@ class Mesh:
         that end in ``.msh``. With ``unit="m"`` coordinates and radii are in meters.
 
         ``materials=True`` gives faces of a GLB or OBJ the colors of their types, of an OBJ in an ``.mtl`` file beside it.
-        Some programs then read a mesh for each type, none of which is closed.
+        Some programs then read a mesh for each type, none of which is closed. ``color_by="type"`` gives vertices of a GLB, PLY
+        or VTU these colors, and the mesh stays one.
+
+        ``compress="draco"`` makes a GLB a tenth as large or less. Whole numbers stay exact, others are rounded; vertices and
+        triangles have another order. Programs without Draco read nothing of it: trimesh needs DracoPy.
 
         PLY, VTU and GLB hold attributes of your own (`with_attribute`), as 32-bit numbers, and `read_mesh` gives them back; in a
         GLB they are called like ``_DISTANCE``. With the name of an attribute as `color`, vertices of a GLB have colors by its numbers (``COLOR_0``),
@@ -323,9 +329,13 @@ class Mesh:
         if own and not holds_own(kind):
             told = f"{os.fspath(path)} has no {', '.join(self._own)}: PLY, VTU and GLB hold attributes of your own"
             warnings.warn(NeurotessWarning(told), stacklevel=2)
+        if color is not None and color_by is not None:
+            raise ValueError("color and color_by both give colors: leave out one of them")
+        if color_by is not None and not {name.lower() for name in self._own}.isdisjoint(COLORS):
+            raise ValueError(f"color_by: the mesh has colors of its own ({', '.join(self._own)}): leave out one of them")
         if color is not None:
             own.append(color_column(self.attributes, color, kind, colormap, range))
-        self._surface.write(path, format, unit, overwrite, materials, own)
+        self._surface.write(path, format, unit, overwrite, materials, color_by, compress, own)
 
     def to_trimesh(self) -> Any:
         """A `trimesh.Trimesh` with `attributes` as vertex attributes.

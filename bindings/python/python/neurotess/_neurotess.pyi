@@ -162,6 +162,8 @@ class Surface:
         unit: str,
         overwrite: bool,
         materials: bool,
+        color_by: str | None,
+        compress: str | None,
         own: list[tuple[str, int, NDArray[np.float32]]],
     ) -> None: ...
     @staticmethod

@@ -18,6 +18,9 @@ TAKEN = {
     *("x", "y", "z", "nx", "ny", "nz"),
 }
 
+#: Names that files have for colors of vertices.
+COLORS = {"red", "green", "blue", "rgb"}
+
 
 def check_name(name: str) -> None:
     """Checks that files can have an attribute of this name."""

@@ -4,6 +4,7 @@ mod columns;
 mod slices;
 
 use std::path::PathBuf;
+use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -298,6 +299,8 @@ impl Surface {
         unit: &str,
         overwrite: bool,
         materials: bool,
+        color_by: Option<&str>,
+        compress: Option<&str>,
         own: Vec<(String, usize, PyReadonlyArray1<'_, f32>)>,
     ) -> PyResult<()> {
         let format = match format {
@@ -315,6 +318,8 @@ impl Surface {
         };
         let mut options = FileOptions::new(format);
         (options.unit, options.materials) = (unit, materials);
+        options.color_by = named("color_by", color_by)?;
+        options.compress = named("compress", compress)?;
         // Quads are halved where a format has none.
         options
             .check(&MeshOptions::default())
@@ -430,6 +435,14 @@ fn unsaved(error: &SaveError) -> PyErr {
 }
 
 /// A format by its name or an extension.
+/// What a keyword names, if it is given.
+fn named<T: FromStr<Err = String>>(keyword: &str, name: Option<&str>) -> PyResult<Option<T>> {
+    let wrong =
+        |name: &str, told: String| PyValueError::new_err(format!("{keyword}='{name}': {told}"));
+    let of = |name: &str| name.parse().map_err(|told| wrong(name, told));
+    name.map(of).transpose()
+}
+
 fn format_named(name: &str) -> PyResult<Format> {
     let plain = name.trim_start_matches('.');
     plain

@@ -44,6 +44,12 @@ impl Builder {
         mesh
     }
 
+    /// Compressed parts of the file stand for so many bytes more, so that it may hold more.
+    pub(super) fn stands_for(&mut self, bytes: usize) {
+        let more = bytes.saturating_mul(PER_BYTE);
+        self.limit = self.limit.saturating_add(more).min(u32::MAX as usize);
+    }
+
     /// Whether numbers of one's own are wanted.
     pub(super) fn wants_own(&self) -> bool {
         self.own.wanted

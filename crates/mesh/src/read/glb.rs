@@ -1,16 +1,22 @@
 //! glTF 2.0: GLB, or JSON that embeds its data. All triangles of the scene, nodes transformed. Primitives of a mesh
 //! that have the same attributes share their vertices, so that a mesh which is divided by material stays closed.
+//! Triangles may be compressed by Draco (`KHR_draco_mesh_compression`).
 
-use std::borrow::Cow;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use serde_json::Value;
 
+use super::arrays::{Arrays, item, items};
 use super::builder::Builder;
+use super::compressed::Compressed;
 use super::lines::index;
 use super::own::OwnAttribute;
-use super::{FilePosition, ReadError, base64, malformed};
+use super::{FilePosition, ReadError, malformed};
 use crate::SurfaceVertex;
+use crate::draco::{Decoded, decode};
 
 pub(super) fn read(bytes: &[u8], mesh: &mut Builder) -> Result<(), ReadError> {
     let (json, binary) = if bytes.starts_with(b"glTF") {
@@ -25,15 +31,10 @@ pub(super) fn read(bytes: &[u8], mesh: &mut Builder) -> Result<(), ReadError> {
             "glTF",
         )
     })?;
-    let buffers = items(&root, "buffers")
-        .iter()
-        .enumerate()
-        // Only the first buffer may be the binary chunk.
-        .map(|(n, buffer)| data(buffer, binary.filter(|_| n == 0)))
-        .collect::<Result<_, _>>()?;
     let scene = Scene {
         root: &root,
-        buffers,
+        arrays: Arrays::new(&root, binary)?,
+        decoded: RefCell::default(),
     };
     scene.read(mesh)
 }
@@ -67,47 +68,40 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
     ))
 }
 
-/// The bytes of a buffer.
-fn data<'a>(buffer: &Value, binary: Option<&'a [u8]>) -> Result<Cow<'a, [u8]>, ReadError> {
-    let Some(uri) = buffer["uri"].as_str() else {
-        return Ok(Cow::Borrowed(binary.unwrap_or_default()));
-    };
-    let Some((_, text)) = uri
-        .split_once(";base64,")
-        .filter(|_| uri.starts_with("data:"))
-    else {
-        let what = format!(
-            "the separate file '{}'",
-            uri.chars().take(40).collect::<String>()
-        );
-        let remedy = "write the model as GLB, with its data inside";
-        return Err(ReadError::Unsupported {
-            at: FilePosition::File,
-            what,
-            remedy,
-        });
-    };
-    let decoded = base64::decode(text.as_bytes(), usize::MAX).map(Cow::Owned);
-    decoded.ok_or_else(|| malformed(FilePosition::File, "a data URI", "base64"))
-}
-
 /// Vertices that several primitives of a mesh may have.
 #[derive(Clone, Copy)]
 struct Shared<'a> {
     attributes: &'a Value,
+    /// What says how they are compressed.
+    extensions: &'a Value,
     /// The number of the first.
     first: u64,
     /// None if they have no positions.
     count: Option<usize>,
 }
 
+/// Where the vertices of a primitive come from.
+#[derive(Clone, Copy)]
+struct Source<'v, 's> {
+    attributes: &'v Value,
+    extensions: &'v Value,
+    /// Names of numbers of one's own, by those that glTF has for them.
+    names: &'v Value,
+    compressed: Option<&'s Compressed<'v>>,
+}
+
 /// Different attributes in a mesh that are compared with those of the next primitive; files of thousands would make
 /// it slow.
 const MAX_SHARED: usize = 64;
 
+/// Bytes that a vertex would have without compression, with its share of two triangles.
+const PLAIN: usize = 64;
+
 struct Scene<'a> {
     root: &'a Value,
-    buffers: Vec<Cow<'a, [u8]>>,
+    arrays: Arrays<'a>,
+    /// Compressed meshes by their buffer view: many nodes may show one.
+    decoded: RefCell<BTreeMap<u64, Rc<Decoded>>>,
 }
 
 impl Scene<'_> {
@@ -136,18 +130,29 @@ impl Scene<'_> {
                 let mut read: Vec<Shared<'_>> = Vec::new();
                 for primitive in items(shape, "primitives") {
                     let attributes = &primitive["attributes"];
-                    let known = read.iter().find(|shared| shared.attributes == attributes);
+                    let extensions = &primitive["extensions"];
+                    let compressed = self.compressed(extensions, mesh)?;
+                    let same = |shared: &&Shared<'_>| {
+                        shared.attributes == attributes && shared.extensions == extensions
+                    };
+                    let known = read.iter().find(same);
                     let shared = match known {
                         Some(&shared) => shared,
                         None => {
-                            let names = &shape["extras"]["attributes"];
-                            self.vertices((attributes, names), world_from_node, mesh)?
+                            let source = Source {
+                                attributes,
+                                extensions,
+                                names: &shape["extras"]["attributes"],
+                                compressed: compressed.as_ref(),
+                            };
+                            self.vertices(source, world_from_node, mesh)?
                         }
                     };
                     if known.is_none() && read.len() < MAX_SHARED {
                         read.push(shared);
                     }
-                    self.faces(primitive, shared, world_from_node, mesh)?;
+                    let triangles = compressed.as_ref().map(Compressed::triangles);
+                    self.faces((primitive, triangles), shared, world_from_node, mesh)?;
                 }
             }
             let children = items(node, "children").iter().filter_map(Value::as_u64);
@@ -179,23 +184,67 @@ impl Scene<'_> {
             .collect()
     }
 
-    /// Reads the vertices of a primitive; none if they have no positions. `names`: those of numbers of one's own, by the
-    /// names that glTF has for them.
+    /// What a primitive's extensions say of compressed triangles.
+    fn compressed<'v>(
+        &self,
+        extensions: &'v Value,
+        mesh: &mut Builder,
+    ) -> Result<Option<Compressed<'v>>, ReadError> {
+        let extension = &extensions["KHR_draco_mesh_compression"];
+        let Some(number) = extension["bufferView"].as_u64() else {
+            return Ok(None);
+        };
+        let known = self.decoded.borrow().get(&number).cloned();
+        let decoded = match known {
+            Some(known) => known,
+            None => {
+                let (bytes, _) = self.arrays.view(number)?;
+                let decoded = decode(bytes).map_err(|error| ReadError::Unsupported {
+                    at: FilePosition::File,
+                    what: error.to_string(),
+                    remedy: "write the model without compression",
+                })?;
+                mesh.stands_for(PLAIN * decoded.vertices);
+                let decoded = Rc::new(decoded);
+                self.decoded.borrow_mut().insert(number, decoded.clone());
+                decoded
+            }
+        };
+        Ok(Some(Compressed::new(decoded, &extension["attributes"])))
+    }
+
+    /// The numbers of an attribute of a primitive, if it has it.
+    fn attribute(
+        &self,
+        source: Source<'_, '_>,
+        name: &str,
+        components: usize,
+    ) -> Result<Option<Vec<f64>>, ReadError> {
+        if let Some(compressed) = source.compressed
+            && let Some(numbers) = compressed.numbers(name, components)?
+        {
+            return Ok(Some(numbers));
+        }
+        let accessor = source.attributes[name].as_u64();
+        accessor
+            .map(|a| self.arrays.numbers(a, components))
+            .transpose()
+    }
+
+    /// Reads the vertices of a primitive; none if they have no positions.
     fn vertices<'v>(
         &self,
-        (attributes, names): (&'v Value, &Value),
+        source: Source<'v, '_>,
         world_from_node: DMat4,
         mesh: &mut Builder,
     ) -> Result<Shared<'v>, ReadError> {
         let mut shared = Shared {
-            attributes,
+            attributes: source.attributes,
+            extensions: source.extensions,
             first: mesh.vertex_count() as u64,
             count: None,
         };
-        let numbers = |name: &str, components: usize| match attributes[name].as_u64() {
-            Some(accessor) => self.numbers(accessor, components).map(Some),
-            None => Ok(None),
-        };
+        let numbers = |name: &str, components: usize| self.attribute(source, name, components);
         let Some(positions) = numbers("POSITION", 3)? else {
             return Ok(shared);
         };
@@ -222,15 +271,16 @@ impl Scene<'_> {
                     .transform_vector3(normal)
                     .normalize_or_zero()
                     .as_vec3(),
-                kind: kind as i32,
-                point: point as i32,
-                section: section as i32,
+                // Compressed ones may be rounded to steps of less than a half.
+                kind: kind.round() as i32,
+                point: point.round() as i32,
+                section: section.round() as i32,
                 radius: radius as f32,
             };
             mesh.vertex(FilePosition::File, position, vertex)?;
         }
         if mesh.wants_own() {
-            self.own_numbers((attributes, names), mesh)?;
+            self.own_numbers(source, positions.len(), mesh)?;
         }
         shared.count = Some(positions.len());
         Ok(shared)
@@ -239,13 +289,15 @@ impl Scene<'_> {
     /// Reads numbers of one's own of the vertices that were read last. Colors and places in pictures are none.
     fn own_numbers(
         &self,
-        (attributes, names): (&Value, &Value),
+        source: Source<'_, '_>,
+        vertices: usize,
         mesh: &mut Builder,
     ) -> Result<(), ReadError> {
+        let Source {
+            attributes, names, ..
+        } = source;
         let accessors = items(self.root, "accessors");
         let of = |number: &Value| item(accessors, number.as_u64().unwrap_or(u64::MAX), "accessor");
-        let count_of = |accessor: &Value| accessor["count"].as_u64().unwrap_or(0) as usize;
-        let vertices = count_of(of(&attributes["POSITION"])?);
         let first = mesh.vertex_count() - vertices;
         for (name, number) in attributes.as_object().into_iter().flatten() {
             let Some(plain) = name
@@ -259,7 +311,10 @@ impl Scene<'_> {
             let Some(components) = SHAPES.iter().position(|known| *known == shape) else {
                 continue;
             };
-            let (components, count) = (components + 1, count_of(accessor));
+            let components = components + 1;
+            let values = self.attribute(source, name, components)?;
+            let values = values.unwrap_or_default();
+            let count = values.len() / components;
             if count != vertices {
                 let found = format!("{count} numbers of {name} for {vertices} vertices");
                 return Err(malformed(FilePosition::File, found, "one for each"));
@@ -268,7 +323,7 @@ impl Scene<'_> {
             let attribute = OwnAttribute {
                 name: own_name.unwrap_or_else(|| plain.to_lowercase()),
                 components,
-                values: self.numbers(number.as_u64().unwrap_or(u64::MAX), components)?,
+                values,
                 single: accessor["componentType"] != UNSIGNED_INT,
             };
             mesh.own(FilePosition::File, first, attribute)?;
@@ -276,10 +331,10 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// Reads the faces of a primitive.
+    /// Reads the faces of a primitive; those that are compressed are given.
     fn faces(
         &self,
-        primitive: &Value,
+        (primitive, triangles): (&Value, Option<&[[u32; 3]]>),
         Shared { first, count, .. }: Shared<'_>,
         world_from_node: DMat4,
         mesh: &mut Builder,
@@ -289,7 +344,8 @@ impl Scene<'_> {
         };
         let mode = primitive["mode"].as_u64().unwrap_or(TRIANGLES);
         let corners = match primitive["indices"].as_u64() {
-            Some(accessor) => self.numbers(accessor, 1)?,
+            _ if triangles.is_some() => Vec::new(),
+            Some(accessor) => self.arrays.numbers(accessor, 1)?,
             None => (0..count as u32).map(f64::from).collect(),
         };
         // A mirrored node turns its faces round.
@@ -303,6 +359,13 @@ impl Scene<'_> {
             }
             mesh.face(FilePosition::File, &corners)
         };
+        if let Some(triangles) = triangles {
+            let mut all = triangles.iter();
+            return all.try_for_each(|t| {
+                let [a, b, c] = t.map(f64::from);
+                push(a, b, c)
+            });
+        }
         match mode {
             TRIANGLES => corners
                 .as_chunks()
@@ -325,82 +388,6 @@ impl Scene<'_> {
             _ => Ok(()),
         }
     }
-
-    /// The numbers of an accessor.
-    fn numbers(&self, number: u64, components: usize) -> Result<Vec<f64>, ReadError> {
-        let accessor = item(items(self.root, "accessors"), number, "accessor")?;
-        let Some(view) = accessor["bufferView"]
-            .as_u64()
-            .filter(|_| accessor["sparse"].is_null())
-        else {
-            let (what, remedy) = (
-                "a sparse accessor",
-                "write the model without sparse accessors",
-            );
-            return Err(ReadError::Unsupported {
-                at: FilePosition::File,
-                what: what.to_owned(),
-                remedy,
-            });
-        };
-        let view = item(items(self.root, "bufferViews"), view, "buffer view")?;
-        let buffer = view["buffer"].as_u64().unwrap_or(0);
-        let buffer: &[u8] = self.buffers.get(buffer as usize).map_or(&[], AsRef::as_ref);
-        let whole = |value: &Value| value.as_u64().unwrap_or(0) as usize;
-        let (start, length) = (whole(&view["byteOffset"]), whole(&view["byteLength"]));
-        let cut = ReadError::Truncated {
-            at: FilePosition::File,
-            what: "a buffer view",
-        };
-        let data = buffer.get(start..start.saturating_add(length)).ok_or(cut)?;
-
-        let kind = whole(&accessor["componentType"]);
-        let width = match kind {
-            5120 | 5121 => 1,
-            5122 | 5123 => 2,
-            5125 | 5126 => 4,
-            _ => {
-                return Err(malformed(
-                    FilePosition::File,
-                    format!("component type {kind}"),
-                    "5120–5126",
-                ));
-            }
-        };
-        let size = width * components;
-        let stride = match whole(&view["byteStride"]) {
-            0 => size,
-            stride if stride >= size => stride,
-            stride => {
-                return Err(malformed(
-                    FilePosition::File,
-                    format!("stride {stride}"),
-                    "a longer one",
-                ));
-            }
-        };
-        let count = whole(&accessor["count"]);
-        let data = data
-            .get(whole(&accessor["byteOffset"])..)
-            .unwrap_or_default();
-        // The last element needs no padding up to the stride.
-        let held = (data.len() + stride - size) / stride;
-        if held < count {
-            return Err(ReadError::Truncated {
-                at: FilePosition::File,
-                what: "an accessor",
-            });
-        }
-        let mut numbers = Vec::with_capacity(count * components);
-        for element in data.chunks(stride).take(count) {
-            numbers.extend(
-                element[..size]
-                    .chunks_exact(width)
-                    .map(|bytes| component(kind, bytes)),
-            );
-        }
-        Ok(numbers)
-    }
 }
 
 /// Numbers of vertices that every mesh has.
@@ -413,19 +400,6 @@ const UNSIGNED_INT: u32 = 5125;
 const TRIANGLES: u64 = 4;
 const STRIP: u64 = 5;
 const FAN: u64 = 6;
-
-/// A number of a component type, from as many bytes as it has.
-fn component(kind: usize, bytes: &[u8]) -> f64 {
-    let mut wide = [0; 4];
-    wide[..bytes.len()].copy_from_slice(bytes);
-    let bits = u32::from_le_bytes(wide);
-    match kind {
-        5120 => f64::from(bits as u8 as i8),
-        5122 => f64::from(bits as u16 as i16),
-        5126 => f64::from(f32::from_bits(bits)),
-        _ => f64::from(bits),
-    }
-}
 
 /// The transform of a node: its matrix, or translation · rotation · scale.
 fn parent_from_node(node: &Value) -> DMat4 {
@@ -440,20 +414,4 @@ fn parent_from_node(node: &Value) -> DMat4 {
     DMat4::from_translation(translation.into())
         * DMat4::from_quat(DQuat::from_array(rotation))
         * DMat4::from_scale(scale.into())
-}
-
-/// A list of an object; empty if it is not there.
-fn items<'a>(value: &'a Value, name: &str) -> &'a [Value] {
-    value
-        .get(name)
-        .and_then(Value::as_array)
-        .map(Vec::as_slice)
-        .unwrap_or_default()
-}
-
-fn item<'a>(list: &'a [Value], number: u64, what: &'static str) -> Result<&'a Value, ReadError> {
-    list.get(number as usize).ok_or_else(|| {
-        let found = format!("{what} {number} of {}", list.len());
-        malformed(FilePosition::File, found, "one that is there")
-    })
 }

@@ -4,8 +4,10 @@
 //! believed only when the data follow. Polygons of more than four corners become fans of triangles;
 //! attributes that our writers write are read back, and numbers of one's own where they are wanted.
 
+mod arrays;
 mod base64;
 mod builder;
+mod compressed;
 mod glb;
 mod lines;
 mod msh;

@@ -20,7 +20,7 @@ mod tetgen;
 mod vtu;
 
 pub use glb::GlbNode;
-pub use materials::WriteOptions;
+pub use materials::{ColorBy, Compression, WriteOptions};
 pub use obj::obj_materials;
 
 use std::collections::BTreeSet;
@@ -30,6 +30,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
+use crate::draco::DracoError;
 #[cfg(doc)]
 use crate::{FaceLabel, VertexAttribute};
 use crate::{Faces, Format, Surface, SurfaceVertex, Unsound, Watched};
@@ -68,6 +69,9 @@ pub enum WriteError {
     /// It is no surface around its tracing.
     #[error(transparent)]
     Unsound(#[from] Unsound),
+    /// It cannot be compressed.
+    #[error(transparent)]
+    Draco(#[from] DracoError),
     /// A bug of the surface: its blocks hold not what it announced.
     #[error("the surface announced {announced} {what} but its blocks hold {found}")]
     Inconsistent {
@@ -128,13 +132,13 @@ pub fn write_with<W: Write + Seek>(
     let mut file = File::begin(out)?;
     let mut kinds = BTreeSet::new();
     match format {
-        Format::Ply => ply::write(surface, &mut file),
+        Format::Ply => ply::write(surface, options.color_by, &mut file),
         Format::Obj => obj::write(surface, options.material_file.as_deref(), &mut file)
             .map(|found| kinds = found),
         Format::Stl => stl::write(surface, &mut file),
-        Format::Glb => glb::write(surface, options.glb_materials, &mut file),
+        Format::Glb => glb::write(surface, options, &mut file),
         Format::Off => off::write(surface, &mut file),
-        Format::Vtu => vtu::write(surface, &mut file),
+        Format::Vtu => vtu::write(surface, options.color_by, &mut file),
         Format::Msh => msh::write(surface, &mut file),
         Format::Msh2 => msh2::write(surface, &mut file),
         Format::Poly => tetgen::write_poly(surface, &mut file),
@@ -169,7 +173,7 @@ pub fn write_glb<W: Write + Seek>(
         .map(|surface| surface as &dyn Surface)
         .collect();
     let mut file = File::begin(out)?;
-    glb::write_all(&surfaces, nodes, options.glb_materials, &mut file)?;
+    glb::write_all(&surfaces, nodes, options, &mut file)?;
     file.out.flush()?;
     for surface in &watched {
         surface.check()?;

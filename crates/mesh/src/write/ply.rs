@@ -3,26 +3,31 @@
 
 use glam::DVec3;
 
-use super::{File, WriteError, absolute, push_numbers, record};
+use super::{ColorBy, File, WriteError, absolute, push_numbers, record};
 use crate::{Surface, SurfaceVertex, VertexAttribute};
 
 /// Bytes of a triangle: its count and three indices.
 const TRIANGLE: u64 = 13;
 
-pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
+pub(super) fn write(
+    surface: &dyn Surface,
+    color_by: Option<ColorBy>,
+    file: &mut File<'_>,
+) -> Result<(), WriteError> {
     let origin = surface.origin();
     let double = origin != DVec3::ZERO;
     let own = surface.attributes();
-    let header = header(surface, double);
+    let header = header(surface, double, color_by.is_some());
     let vertices = header.len() as u64;
-    let row = if double { 52 } else { 40 };
+    let colored = if color_by.is_some() { 3 } else { 0 };
+    let row = colored + if double { 52 } else { 40 };
     let own_bytes: usize = own.iter().map(|a| 4 * a.components).sum();
     let triangles = vertices + surface.vertex_count() as u64 * (row + own_bytes) as u64;
     let quads = triangles + surface.triangle_count() as u64 * TRIANGLE;
 
     file.put(&mut 0, header.as_bytes())?;
     let encode = |group: &[SurfaceVertex], bytes: &mut Vec<u8>| {
-        bytes.reserve(52 * group.len());
+        bytes.reserve(row * group.len());
         for v in group {
             let n = v.normal;
             if double {
@@ -33,6 +38,9 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
                 let p = v.position;
                 bytes.extend_from_slice(&record![40;
                     p.x, p.y, p.z, n.x, n.y, n.z, v.kind, v.point, v.section, v.radius]);
+            }
+            if let Some(by) = color_by {
+                bytes.extend_from_slice(&by.of(v));
             }
         }
     };
@@ -95,7 +103,7 @@ fn own_properties(own: &[VertexAttribute<'_>]) -> String {
     names.collect()
 }
 
-fn header(surface: &dyn Surface, double: bool) -> String {
+fn header(surface: &dyn Surface, double: bool, colors: bool) -> String {
     let real = if double { "double" } else { "float" };
     let (unit, vertices) = (surface.unit(), surface.vertex_count());
     let faces = surface.triangle_count() + surface.quad_count();
@@ -107,6 +115,10 @@ fn header(surface: &dyn Surface, double: bool) -> String {
     };
     let own = own_properties(surface.attributes());
     let comments = own_comments(surface.attributes());
+    let colors = match colors {
+        true => "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+        false => "",
+    };
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\
@@ -118,7 +130,7 @@ fn header(surface: &dyn Surface, double: bool) -> String {
          property float nx\nproperty float ny\nproperty float nz\n\
          property int type\nproperty int point\nproperty int section\n\
          property float radius\n\
-         {own}\
+         {colors}{own}\
          element face {faces}\n\
          property list uchar {index} vertex_indices\n\
          end_header\n"

@@ -1,18 +1,22 @@
 //! VTU, VTK's XML unstructured grid with appended raw data:
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 //!
-//! Nine arrays, each a 64-bit count of bytes and the data. Vertices fill six of them side by side. Numbers of one's own
-//! follow.
+//! Ten arrays, each a 64-bit count of bytes and the data; the last, of colors, is left out where there are none. Vertices
+//! fill seven of them side by side. Numbers of one's own follow.
 
 use glam::DVec3;
 
-use super::{File, WriteError, absolute, push_numbers, record};
+use super::{ColorBy, File, WriteError, absolute, push_numbers, record};
 use crate::{Surface, Unit, VertexAttribute};
 
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
-pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), WriteError> {
+pub(super) fn write(
+    surface: &dyn Surface,
+    color_by: Option<ColorBy>,
+    file: &mut File<'_>,
+) -> Result<(), WriteError> {
     let origin = surface.origin();
     let double = origin != DVec3::ZERO;
     let vertices = surface.vertex_count() as u64;
@@ -28,17 +32,26 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         8 * (3 * triangles + 4 * quads),
         8 * cells,
         cells,
+        3 * vertices,
     ];
-    let mut offsets = [0; 10];
+    let mut offsets = [0; 11];
     for (n, size) in sizes.iter().enumerate() {
         offsets[n + 1] = offsets[n] + 8 + size;
     }
+    let arrays = if color_by.is_some() { 10 } else { 9 };
 
     let own = surface.attributes();
-    let header = header(surface.unit(), vertices, cells, double, &offsets, own);
+    let header = header(
+        surface.unit(),
+        vertices,
+        cells,
+        double,
+        &offsets[..=arrays],
+        own,
+    );
     let start = header.len() as u64;
     file.put(&mut 0, header.as_bytes())?;
-    let data: [u64; 9] = std::array::from_fn(|n| start + offsets[n] + 8);
+    let data: [u64; 10] = std::array::from_fn(|n| start + offsets[n] + 8);
     let [
         points,
         normals,
@@ -49,14 +62,15 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         connectivity,
         ends,
         types,
+        colors,
     ] = data;
 
-    for (place, size) in data.iter().zip(sizes) {
+    for (place, size) in data[..arrays].iter().zip(sizes) {
         file.put(&mut (place - 8), &size.to_le_bytes())?;
     }
-    let mut places = [points, normals, kinds, tracing, sections, radii];
+    let mut places = [points, normals, kinds, tracing, sections, radii, colors];
     file.vertices(surface, &mut places, |group, buffers| {
-        let [points, normals, kinds, tracing, sections, radii] = buffers;
+        let [points, normals, kinds, tracing, sections, radii, colors] = buffers;
         for v in group {
             if double {
                 let [x, y, z] = absolute(v, origin);
@@ -70,6 +84,9 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
             tracing.extend_from_slice(&v.point.to_le_bytes());
             sections.extend_from_slice(&v.section.to_le_bytes());
             radii.extend_from_slice(&v.radius.to_le_bytes());
+            if let Some(by) = color_by {
+                colors.extend_from_slice(&by.of(v));
+            }
         }
     })?;
     let quads_at = connectivity + 8 * 3 * triangles;
@@ -88,7 +105,7 @@ pub(super) fn write(surface: &dyn Surface, file: &mut File<'_>) -> Result<(), Wr
         },
     )?;
     cells_of(file, ends, types, triangles, quads)?;
-    let mut end = start + offsets[9];
+    let mut end = start + offsets[arrays];
     for attribute in own {
         let mut bytes = (4 * attribute.values.len() as u64).to_le_bytes().to_vec();
         push_numbers(&mut bytes, attribute.values);
@@ -140,7 +157,7 @@ fn header(
     vertices: u64,
     cells: u64,
     double: bool,
-    offsets: &[u64; 10],
+    offsets: &[u64],
     own: &[VertexAttribute<'_>],
 ) -> String {
     let real = if double { "Float64" } else { "Float32" };
@@ -151,6 +168,11 @@ fn header(
             offsets[n]
         )
     };
+    let colors = match offsets.len() {
+        11 => format!("\n        {}", array(9, "UInt8", "RGB", 3)),
+        _ => String::new(),
+    };
+    let after = offsets.last().copied().unwrap_or(0);
     format!(
         r#"<?xml version="1.0"?>
 <!-- neurotess, units: {unit} -->
@@ -162,7 +184,7 @@ fn header(
         {}
         {}
         {}
-        {}{}
+        {}{colors}{}
       </PointData>
       <Points>
         {}
@@ -181,7 +203,7 @@ fn header(
         array(3, "Int32", "point", 1),
         array(4, "Int32", "section", 1),
         array(5, "Float32", "radius", 1),
-        own_arrays(own, offsets[9]),
+        own_arrays(own, after),
         array(0, real, "Points", 3),
         array(6, "Int64", "connectivity", 1),
         array(7, "Int64", "offsets", 1),

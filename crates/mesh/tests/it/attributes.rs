@@ -9,7 +9,7 @@ use neurotess_mesh::{
 };
 
 /// A surface with numbers of one's own.
-struct With<'a>(SurfaceMesh, Vec<VertexAttribute<'a>>);
+pub(crate) struct With<'a>(pub(crate) SurfaceMesh, pub(crate) Vec<VertexAttribute<'a>>);
 
 impl Surface for With<'_> {
     forward_surface!(

@@ -5,6 +5,7 @@
 use std::time::{Duration, Instant};
 
 use crate::attributes::with_numbers;
+use crate::compressed::compressed;
 use crate::shapes::{torus, written};
 use glam::DVec3;
 use neurotess_mesh::{Format, OwnAttribute, check, read_bytes, read_bytes_with_attributes};
@@ -88,6 +89,7 @@ fn mutated_files_neither_panic_nor_explode() {
         seeds.push((format, with_numbers(format)));
     }
     seeds.push((Format::Stl, text_stl.to_vec()));
+    seeds.push((Format::Glb, compressed(&torus(4, 3, DVec3::ZERO))));
 
     let mut dice = Dice(number("NEUROTESS_FUZZ_SEED").unwrap_or(0x9e37_79b9_7f4a_7c15) | 1);
     let (clock, mut rounds) = (Instant::now(), 0);

@@ -7,7 +7,9 @@ use std::process::Command;
 use crate::shapes::{neuron, torus, written};
 use glam::DVec3;
 use neurotess_mesh::palette::{Palette, linear};
-use neurotess_mesh::{Format, SurfaceMesh, WriteOptions, obj_materials, region_name, write_with};
+use neurotess_mesh::{
+    ColorBy, Format, SurfaceMesh, WriteOptions, obj_materials, region_name, write_with,
+};
 use neurotess_testing::python_with;
 use serde_json::Value;
 
@@ -224,6 +226,42 @@ fn others_see_the_colors_of_types() {
                 assert_near(&of[n], expected, 1.0, "color");
             }
         }
+    }
+}
+
+#[neurotess_testing::test(needs(neurotess_testing::full, python))]
+fn others_see_the_colors_of_vertices() {
+    let python = python_with("trimesh").expect("the test has needs(python)");
+    let mut mesh = neuron(DVec3::ZERO);
+    // trimesh reads no binary PLY with faces of both kinds.
+    for [a, b, c, d] in std::mem::take(&mut mesh.faces.quads) {
+        mesh.faces.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = WriteOptions {
+        color_by: Some(ColorBy::Type),
+        ..WriteOptions::default()
+    };
+    let files = [Format::Ply, Format::Vtu].map(|format| {
+        let mut file = Cursor::new(Vec::new());
+        write_with(&mesh, format, &options, &mut file).expect("written");
+        let path = folder.path().join(format!("cell.{format}"));
+        std::fs::write(&path, file.into_inner()).expect("written");
+        path
+    });
+    let results = run(&python, "read_colors.py", files.iter().map(|file| &**file));
+    let colors = mesh
+        .vertices
+        .iter()
+        .map(|v| Palette::default().of_type(v.kind));
+    let colors: Value = colors.map(|rgb| rgb.to_vec()).collect();
+    assert_eq!(results.len(), 2);
+    for found in &results {
+        assert_eq!(
+            found["colors"], colors,
+            "{} by {}",
+            found["file"], found["reader"]
+        );
     }
 }
 

@@ -1,6 +1,9 @@
 //! Meshes, their files and checks.
 
 mod attributes;
+mod colors;
+mod compressed;
+mod draco;
 mod fuzz;
 mod independent;
 mod intersect;

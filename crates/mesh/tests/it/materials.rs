@@ -3,14 +3,13 @@
 use std::collections::BTreeSet;
 use std::io::Cursor;
 
-use crate::shapes::{Blocks, neuron, torus, written};
+use crate::shapes::{Blocks, json, neuron, torus, written};
 use glam::{DAffine3, DVec3};
 use neurotess_mesh::palette::{Palette, linear};
 use neurotess_mesh::{
     FaceLabel, Format, GlbNode, Surface, SurfaceMesh, WriteOptions, check, obj_materials,
     read_bytes, region_name, write_glb, write_with,
 };
-use serde_json::Value;
 
 fn with_options(surface: &dyn Surface, format: Format, options: &WriteOptions) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
@@ -88,11 +87,6 @@ fn colored() -> WriteOptions {
         glb_materials: true,
         ..WriteOptions::default()
     }
-}
-
-fn json(glb: &[u8]) -> Value {
-    let length = u32::from_le_bytes(glb[12..16].try_into().expect("four")) as usize;
-    serde_json::from_slice(&glb[20..20 + length]).expect("JSON")
 }
 
 #[neurotess_testing::test]

@@ -49,6 +49,12 @@ pub(crate) fn written(mesh: &SurfaceMesh, format: Format) -> Vec<u8> {
     file.into_inner()
 }
 
+/// The JSON of a GLB.
+pub(crate) fn json(glb: &[u8]) -> serde_json::Value {
+    let length = u32::from_le_bytes(glb[12..16].try_into().expect("four")) as usize;
+    serde_json::from_slice(&glb[20..20 + length]).expect("JSON")
+}
+
 /// Many blocks of few vertices and faces: as a surface refined patch by patch.
 pub(crate) struct Blocks(pub(crate) SurfaceMesh, pub(crate) usize);
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use neurotess_mesh::{Format, Unit};
+use neurotess_mesh::{ColorBy, Compression, Format, Unit, WriteOptions};
 
 use crate::{Levels, MeshOptions, OptionsError};
 
@@ -18,18 +18,24 @@ pub struct FileOptions {
     pub walls: bool,
     /// Whether faces have the material of their type: in a GLB, and of an OBJ in a file beside it.
     pub materials: bool,
+    /// What the colors of vertices tell: in a PLY, VTU or GLB.
+    pub color_by: Option<ColorBy>,
+    /// How a GLB is compressed. It is whole in memory while it is made, and has its triangles in another order.
+    pub compress: Option<Compression>,
     /// Whether each type gets a file of its own, named after the whole.
     pub parts: bool,
 }
 
 impl FileOptions {
-    /// One file of this format, in µm, without walls and materials.
+    /// One file of this format, in µm, without walls, materials, colors and compression.
     pub fn new(format: Format) -> Self {
         Self {
             format,
             unit: Unit::Micrometer,
             walls: false,
             materials: false,
+            color_by: None,
+            compress: None,
             parts: false,
         }
     }
@@ -38,6 +44,16 @@ impl FileOptions {
     pub fn materials_of(&self, out: &Path) -> Option<PathBuf> {
         let has_one = self.format == Format::Obj && self.materials;
         has_one.then(|| out.with_extension("mtl"))
+    }
+
+    /// How a surface is written so. `material_file`: the name of the file that an OBJ refers to.
+    pub fn writing(&self, material_file: Option<String>) -> WriteOptions {
+        WriteOptions {
+            material_file,
+            glb_materials: self.materials && self.format == Format::Glb,
+            color_by: self.color_by,
+            compression: self.compress,
+        }
     }
 
     /// Whether files of such meshes can be as they are asked for.
@@ -59,6 +75,15 @@ impl FileOptions {
         }
         if self.materials && !matches!(format, Format::Obj | Format::Glb) {
             return Err(OptionsError::NoMaterials(format));
+        }
+        if self.color_by.is_some() && !format.has_colors() {
+            return Err(OptionsError::NoColors(format));
+        }
+        if self.compress.is_some() && format != Format::Glb {
+            return Err(OptionsError::NoCompression(format));
+        }
+        if self.compress.is_some() && self.materials {
+            return Err(OptionsError::CompressedMaterials);
         }
         Ok(())
     }
@@ -110,6 +135,26 @@ mod tests {
         };
         let refused = Err(OptionsError::NoMaterials(Format::Off));
         assert_eq!(check(materials, usual()), refused);
+        let colored = |format| FileOptions {
+            color_by: Some(ColorBy::Type),
+            ..of(format)
+        };
+        assert_eq!(check(colored(Format::Vtu), usual()), Ok(()));
+        let refused = Err(OptionsError::NoColors(Format::Obj));
+        assert_eq!(check(colored(Format::Obj), usual()), refused);
+        let compressed = |options| FileOptions {
+            compress: Some(Compression::Draco),
+            ..options
+        };
+        assert_eq!(check(compressed(colored(Format::Glb)), usual()), Ok(()));
+        let refused = Err(OptionsError::NoCompression(Format::Ply));
+        assert_eq!(check(compressed(of(Format::Ply)), usual()), refused);
+        let materials = FileOptions {
+            format: Format::Glb,
+            ..materials
+        };
+        let refused = Err(OptionsError::CompressedMaterials);
+        assert_eq!(check(compressed(materials), usual()), refused);
     }
 
     #[test]

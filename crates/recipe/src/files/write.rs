@@ -4,7 +4,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use neurotess_mesh::{
-    Format, Parts, Surface, WriteError, WriteOptions, obj_materials, region_name, write_with,
+    Parts, Surface, WriteError, WriteOptions, obj_materials, region_name, write_with,
 };
 use neurotess_output::{Existing, Output, OutputError};
 use serde::Serialize;
@@ -117,10 +117,8 @@ impl Target<'_> {
         let beside = beside.map(|file| Output::create(file, self.existing));
         let beside = beside.transpose()?;
         let name = materials.as_deref().and_then(Path::file_name);
-        let options = WriteOptions {
-            material_file: name.map(|name| name.to_string_lossy().into_owned()),
-            glb_materials: self.options.materials && format == Format::Glb,
-        };
+        let name = name.map(|name| name.to_string_lossy().into_owned());
+        let options = self.options.writing(name);
         let mut files = CellFiles {
             whole,
             parts: Vec::new(),

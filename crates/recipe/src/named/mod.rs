@@ -128,6 +128,8 @@ impl NamedOptions {
             | MeshOption::Unit
             | MeshOption::Walls
             | MeshOption::Materials
+            | MeshOption::ColorBy
+            | MeshOption::Compress
             | MeshOption::Parts => return Err(unknown()),
         }
         Ok(())

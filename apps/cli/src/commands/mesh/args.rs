@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use neurotess::batch::Shard;
 use neurotess::generate::Smooth;
-use neurotess::mesh::{Format, Unit};
+use neurotess::mesh::{ColorBy, Compression, Format, Unit};
 
 use crate::options::out::OutArgs;
 use neurotess::options::groups::CellSelection;
@@ -23,6 +23,7 @@ use neurotess::options::words::Types;
   neurotess mesh cell.swc -o cell.ply --simulation
   neurotess mesh cells/ -o meshes/ --format stl --types axon,2,custom_9
   neurotess mesh cell.swc -o cell.glb --materials      (in the colors of types: for Blender)
+  neurotess mesh cell.swc -o cell.glb --compress draco --color-by type      (small, for the web)
   neurotess mesh cell.swc -o cell.stl --parts      (cell_soma.stl, cell_axon.stl, …)
   neurotess mesh cells/ -o meshes/ --shard $SLURM_ARRAY_TASK_ID/100 --resume --log 1.jsonl
   neurotess mesh cell.swc -o cell.msh --unit m --table cell.csv
@@ -187,6 +188,18 @@ pub(crate) struct MeshArgs {
     /// programs, as trimesh, then read a mesh for each material, none of which is closed
     #[arg(long, help_heading = "Output")]
     pub(crate) materials: bool,
+    /// Colors of vertices (glb, ply, vtu): type, as pictures have them. The mesh stays one and closed
+    #[arg(long, value_name = "WHAT", help_heading = "Output")]
+    pub(crate) color_by: Option<ColorBy>,
+    /// Compress a glb: draco makes it a tenth as large or less. Whole numbers stay exact, floats are rounded, vertices and
+    /// triangles get another order. Some programs do not read it, see docs/mesh.md
+    #[arg(
+        long,
+        value_name = "HOW",
+        conflicts_with = "table",
+        help_heading = "Output"
+    )]
+    pub(crate) compress: Option<Compression>,
     /// A file for each type instead of one: OUT_soma, OUT_axon, OUT_basal_dendrite, … Each is open where it
     /// was cut from the next, unless --walls close it
     #[arg(long, conflicts_with = "table", help_heading = "Output")]

@@ -10,7 +10,7 @@ use glam::DVec3;
 use itertools::Itertools;
 use neurotess::batch::{self, Inputs};
 use neurotess::circuit::{Circuit, Instance, soma_center};
-use neurotess::mesh::{Format, GlbNode, Surface, WriteError, WriteOptions, write_glb};
+use neurotess::mesh::{Format, GlbNode, Surface, WriteError, write_glb};
 use neurotess::recipe::{CellMesh, CellSurface, Spelling, Watch, mesh_watched};
 use serde::Serialize;
 
@@ -89,10 +89,7 @@ pub(super) fn run(
         })
         .collect();
     let mut output = Output::create(out, existing(options.force))?;
-    let write_options = WriteOptions {
-        glb_materials: options.files.materials,
-        ..WriteOptions::default()
-    };
+    let write_options = options.files.writing(None);
     write_glb(&surfaces, &nodes, &write_options, output.file()).map_err(|e| match e {
         WriteError::Io(e) => OutputError::broken(out, e),
         other => OutputError::broken(out, std::io::Error::other(other)),

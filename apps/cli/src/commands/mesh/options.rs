@@ -52,6 +52,7 @@ impl MeshOptions {
         let mut files = FileOptions::new(format(args, inputs)?);
         files.unit = args.unit.unit();
         (files.walls, files.materials, files.parts) = (args.walls, args.materials, args.parts);
+        (files.color_by, files.compress) = (args.color_by, args.compress);
         let recipe = named(args).and_then(|mut named| {
             // The mesh that the tracing's own file has, unless there is a file of this name.
             let of_input = named.soma_mesh.as_deref() == Some("file".as_ref());

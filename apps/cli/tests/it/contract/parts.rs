@@ -1,4 +1,4 @@
-//! `mesh --parts` and `mesh --materials`: files of types, groups and colors.
+//! `mesh --parts`, `--materials`, `--color-by` and `--compress`: files of types, groups, colors; small ones.
 
 use std::fs;
 
@@ -138,6 +138,39 @@ fn a_glb_is_closed_with_materials_and_without() {
 }
 
 #[neurotess_testing::test]
+fn a_compressed_glb_is_closed_and_has_all_in_fewer_bytes() {
+    let work = Work::new();
+    work.file("cell.swc", SMALL);
+    work.run("mesh cell.swc -o plain.glb").exits(0);
+    work.run("mesh cell.swc -o small.glb --compress draco --color-by type")
+        .exits(0);
+    let [plain, small] =
+        ["plain.glb", "small.glb"].map(|file| fs::read(work.path(file)).expect("there"));
+    assert!(
+        8 * small.len() < plain.len(),
+        "{} {}",
+        small.len(),
+        plain.len()
+    );
+    let report = work.run("check plain.glb small.glb --json").exits(0).json();
+    for key in ["closed", "vertices", "triangles", "euler", "components"] {
+        assert_eq!(report[0][key], report[1][key], "{key}");
+    }
+    assert_eq!(report[1]["closed"], true);
+    // Other options, another file.
+    let skipped = |options: &str| {
+        let run = work.run(&format!(
+            "mesh cell.swc -o again.glb --resume --json {options}"
+        ));
+        run.exits(0).json()[0]["skipped"] == true
+    };
+    assert!(!skipped(""));
+    assert!(!skipped("--compress draco"));
+    assert!(skipped("--compress draco"));
+    assert!(!skipped("--compress draco --color-by type"));
+}
+
+#[neurotess_testing::test]
 fn resuming_knows_parts_and_materials() {
     let work = Work::new();
     work.file("cells/a.swc", SMALL);
@@ -203,6 +236,18 @@ fn what_cannot_be_is_wrong_usage() {
             "another order than the rows",
         ),
         ("-o a.ply --parts --table a.csv", "cannot be used with"),
+        ("-o a.obj --color-by type", "use --materials"),
+        ("-o a.ply --color-by radius", "files have colors by type"),
+        ("-o a.ply --compress draco", "only glb is compressed"),
+        ("-o a.glb --compress zip", "use draco"),
+        (
+            "-o a.glb --compress draco --materials",
+            "use --color-by type instead",
+        ),
+        (
+            "-o a.glb --compress draco --table a.csv",
+            "cannot be used with",
+        ),
         ("-o a.ply --walls", "cannot tell walls"),
         ("-o a.ply --walls --parts --quads", "made of triangles"),
     ] {

@@ -1,6 +1,6 @@
 //! GLB, glTF 2.0: <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 //!
-//! Vertices are interleaved, 40 bytes each, so that one pass over the surface writes them. The
+//! Vertices are interleaved, 40 bytes each, 48 with colors, so that one pass over the surface writes them. The
 //! bounds that glTF asks for are known only after it: the JSON comes first in the file, therefore
 //! it gets room for the longest numbers and is written last. Several surfaces follow one another in the
 //! binary chunk; nodes show each where it stands, as often as they like.
@@ -10,20 +10,21 @@
 //! [`ROOM`] to a surface, and if there are more, the file is written again with as much room as it needs. **Why not**
 //! look first: a pass over the vertices takes two fifths of writing.
 
+mod document;
+mod draco;
+
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3, Vec3};
-use serde_json::{Value, json};
 
-use super::materials::type_color;
-use super::{File, WriteError, push_numbers, record, split};
+use super::{Compression, File, WriteError, WriteOptions, push_numbers, record, split};
 use crate::face_types::{TypesOfGroups, VertexTypes};
-use crate::palette::linear;
-use crate::{Faces, Format, Surface, region_name};
+use crate::{Faces, Format, Surface};
+use document::{COLOR, document};
 
-/// Bytes of a vertex.
-const STRIDE: u64 = 40;
+/// Bytes of a vertex, and of one with a color, which is padded to a multiple of 4.
+const STRIDES: [u64; 2] = [40, 48];
 
 /// Types of a surface that the JSON has room for in any case: as many as have names in SWC.
 const ROOM: usize = 5;
@@ -42,16 +43,13 @@ pub struct GlbNode {
     pub world_from_surface: DAffine3,
 }
 
-/// Types of accessors by their number of components.
-const SHAPES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
-
 /// A name as glTF wants those that are not its own, unless another attribute has it.
-fn gltf_name(name: &str, others: &[OwnSpan]) -> String {
-    if name == "COLOR_0" {
+fn gltf_name(name: &str, others: &[String]) -> String {
+    if name == COLOR {
         return name.into();
     }
     let mut upper = format!("_{}", name.to_uppercase());
-    while others.iter().any(|other| other.gltf_name == upper) {
+    while others.contains(&upper) {
         upper.push('_');
     }
     upper
@@ -68,6 +66,8 @@ struct OwnSpan {
 /// Where the arrays of a surface lie in the binary chunk.
 struct Span {
     vertices: u64,
+    /// Bytes of a vertex.
+    stride: u64,
     first_vertex: u64,
     indices: u64,
     first_index: u64,
@@ -81,7 +81,7 @@ struct Span {
 
 pub(super) fn write(
     surface: &dyn Surface,
-    materials: bool,
+    options: &WriteOptions,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
     let here = GlbNode {
@@ -89,16 +89,21 @@ pub(super) fn write(
         surface: 0,
         world_from_surface: DAffine3::IDENTITY,
     };
-    write_all(&[surface], &[here], materials, file)
+    write_all(&[surface], &[here], options, file)
 }
 
 /// Writes surfaces with the nodes that show them.
 pub(super) fn write_all(
     surfaces: &[&dyn Surface],
     nodes: &[GlbNode],
-    materials: bool,
+    options: &WriteOptions,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
+    if let Some(Compression::Draco) = options.compression {
+        return draco::write(surfaces, nodes, options, file);
+    }
+    let materials = options.glb_materials;
+    let stride = STRIDES[usize::from(options.color_by.is_some())];
     let mut spans = Vec::new();
     let mut binary = 0;
     for surface in surfaces {
@@ -107,12 +112,13 @@ pub(super) fn write_all(
         // As many as there is room for, with the longest name.
         let kinds = (i32::MIN..).take(if materials { ROOM } else { 0 });
         let first_vertex = binary;
-        binary += STRIDE * vertices + 12 * faces;
-        let mut own = Vec::new();
+        binary += stride * vertices + 12 * faces;
+        let mut own: Vec<OwnSpan> = Vec::new();
         for a in surface.attributes() {
+            let others: Vec<String> = own.iter().map(|own| own.gltf_name.clone()).collect();
             own.push(OwnSpan {
                 name: a.name.to_owned(),
-                gltf_name: gltf_name(a.name, &own),
+                gltf_name: gltf_name(a.name, &others),
                 components: a.components,
                 start: binary,
             });
@@ -120,9 +126,10 @@ pub(super) fn write_all(
         }
         spans.push(Span {
             vertices,
+            stride,
             first_vertex,
             indices: 3 * faces,
-            first_index: first_vertex + STRIDE * vertices,
+            first_index: first_vertex + stride * vertices,
             bounds: [Vec3::ZERO; 2],
             own,
             kinds: kinds.map(|kind| (kind, 3 * faces)).collect(),
@@ -144,7 +151,7 @@ pub(super) fn write_all(
             });
         };
         for (surface, span) in surfaces.iter().zip(&mut spans) {
-            write_surface(*surface, start, materials, span, file)?;
+            write_surface(*surface, start, options, span, file)?;
         }
         let json = document(&spans, &origins, nodes).to_string();
         if json.len() as u64 > json_bytes {
@@ -168,10 +175,11 @@ pub(super) fn write_all(
 fn write_surface(
     surface: &dyn Surface,
     start: u64,
-    materials: bool,
+    options: &WriteOptions,
     span: &mut Span,
     file: &mut File<'_>,
 ) -> Result<(), WriteError> {
+    let materials = options.glb_materials;
     let bounds = Mutex::new([Vec3::INFINITY, Vec3::NEG_INFINITY]);
     let types = TypesOfGroups::default();
     file.vertices_of_blocks(
@@ -182,13 +190,17 @@ fn write_surface(
                 types.add(&blocks, group);
             }
             let mut mine = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-            bytes.reserve(STRIDE as usize * group.len());
+            bytes.reserve(span.stride as usize * group.len());
             for v in group {
                 let (p, n) = (v.position, v.normal);
                 mine = [mine[0].min(p), mine[1].max(p)];
                 bytes.extend_from_slice(&record![40;
                 p.x, p.y, p.z, n.x, n.y, n.z,
                 v.kind as f32, v.point as f32, v.section as f32, v.radius]);
+                if let Some(by) = options.color_by {
+                    let [r, g, b] = by.light(v);
+                    bytes.extend_from_slice(&record![8; r, g, b, 0u16]);
+                }
             }
             let mut bounds = bounds.lock().unwrap_or_else(PoisonError::into_inner);
             *bounds = [bounds[0].min(mine[0]), bounds[1].max(mine[1])];
@@ -302,187 +314,3 @@ fn halved(group: &Faces) -> impl Iterator<Item = [u32; 3]> {
     let halves = group.quads.iter().flat_map(split);
     group.triangles.iter().copied().chain(halves)
 }
-
-/// The JSON. Surfaces without vertices have no mesh and no nodes, since accessors must not be empty.
-fn document(spans: &[Span], origins: &[DVec3], nodes: &[GlbNode]) -> Value {
-    let asset = json!({
-        "version": "2.0",
-        "generator": concat!("neurotess ", env!("CARGO_PKG_VERSION")),
-        "extras": { "units": "micrometer" },
-    });
-    let mut arrays = Arrays::default();
-    let meshes: Vec<Option<usize>> = spans.iter().map(|span| arrays.add(span)).collect();
-    let shown = nodes.iter().filter_map(|node| {
-        let mesh = meshes.get(node.surface).copied().flatten()?;
-        Some(node_of(node, mesh, origins[node.surface]))
-    });
-    let shown: Vec<Value> = shown.collect();
-    if shown.is_empty() {
-        return json!({ "asset": asset, "scene": 0, "scenes": [{}] });
-    }
-    let own = |s: &Span| {
-        s.own
-            .iter()
-            .map(|own| 4 * own.components as u64 * s.vertices)
-            .sum::<u64>()
-    };
-    let bytes: u64 = spans
-        .iter()
-        .map(|s| STRIDE * s.vertices + 4 * s.indices + own(s))
-        .sum();
-    let mut root = json!({
-        "asset": asset,
-        "scene": 0,
-        "scenes": [{ "nodes": (0..shown.len()).collect::<Vec<_>>() }],
-        "nodes": shown,
-        "meshes": arrays.meshes,
-        "accessors": arrays.accessors,
-        "bufferViews": arrays.views,
-        "buffers": [{ "byteLength": bytes }],
-    });
-    // A list must not be empty.
-    if !arrays.materials.is_empty() {
-        root["materials"] = json!(arrays.materials);
-    }
-    root
-}
-
-fn node_of(node: &GlbNode, mesh: usize, origin: DVec3) -> Value {
-    let (scale, rotation, _) = node.world_from_surface.to_scale_rotation_translation();
-    let translation = node.world_from_surface.transform_point3(origin);
-    let mut value = json!({ "mesh": mesh, "translation": translation.to_array() });
-    if !node.name.is_empty() {
-        value["name"] = json!(node.name);
-    }
-    if node.world_from_surface.matrix3 != DAffine3::IDENTITY.matrix3 {
-        value["rotation"] = json!(rotation.to_array());
-        value["scale"] = json!(scale.to_array());
-    }
-    value
-}
-
-/// What the JSON says of surfaces.
-#[derive(Default)]
-struct Arrays {
-    meshes: Vec<Value>,
-    accessors: Vec<Value>,
-    views: Vec<Value>,
-    materials: Vec<Value>,
-    /// The material of each type.
-    of_kinds: BTreeMap<i32, usize>,
-}
-
-impl Arrays {
-    /// Gives the number of the mesh, if there is anything in it.
-    fn add(&mut self, span: &Span) -> Option<usize> {
-        if span.vertices == 0 {
-            return None;
-        }
-        let view = self.views.len();
-        self.views.push(json!({
-            "buffer": 0, "byteOffset": span.first_vertex, "byteLength": STRIDE * span.vertices,
-            "byteStride": STRIDE, "target": ARRAY_BUFFER,
-        }));
-        let first = self.accessors.len();
-        let kinds = ["VEC3", "VEC3", "SCALAR", "SCALAR", "SCALAR", "SCALAR"];
-        for (kind, offset) in kinds.into_iter().zip([0, 12, 24, 28, 32, 36]) {
-            self.accessors.push(json!({
-                "bufferView": view, "byteOffset": offset, "componentType": FLOAT,
-                "count": span.vertices, "type": kind,
-            }));
-        }
-        let mut attributes = json!({
-            "POSITION": first, "NORMAL": first + 1, "_TYPE": first + 2, "_POINT": first + 3,
-            "_SECTION": first + 4, "_RADIUS": first + 5,
-        });
-        // Names whose letters glTF's do not tell.
-        let mut names = serde_json::Map::new();
-        for own in &span.own {
-            let gltf_name = &own.gltf_name;
-            attributes[gltf_name] = json!(self.accessors.len());
-            if gltf_name.starts_with('_') && own.name != gltf_name[1..].to_lowercase() {
-                names.insert(gltf_name.clone(), json!(own.name));
-            }
-            self.accessors.push(json!({
-                "bufferView": self.views.len(), "componentType": FLOAT, "count": span.vertices,
-                "type": SHAPES[own.components.clamp(1, 4) - 1],
-            }));
-            self.views.push(json!({
-                "buffer": 0, "byteOffset": own.start,
-                "byteLength": 4 * own.components as u64 * span.vertices, "target": ARRAY_BUFFER,
-            }));
-        }
-        let [low, high] = span.bounds;
-        self.accessors[first]["min"] = json!(low.to_array());
-        self.accessors[first]["max"] = json!(high.to_array());
-        let primitive = |indices: Option<usize>, material: Option<usize>| {
-            let mut primitive = json!({
-                "attributes": attributes,
-                "mode": if indices.is_some() { TRIANGLES } else { POINTS },
-            });
-            if let Some(indices) = indices {
-                primitive["indices"] = json!(indices);
-            }
-            if let Some(material) = material {
-                primitive["material"] = json!(material);
-            }
-            primitive
-        };
-        let mut primitives = Vec::new();
-        if span.indices > 0 {
-            let view = self.views.len();
-            self.views.push(json!({
-                "buffer": 0, "byteOffset": span.first_index, "byteLength": 4 * span.indices,
-                "target": ELEMENT_ARRAY_BUFFER,
-            }));
-            if span.kinds.is_empty() {
-                primitives.push(primitive(Some(self.indices(view, 0, span.indices)), None));
-            }
-            let mut offset = 0;
-            for (&kind, &count) in &span.kinds {
-                let indices = self.indices(view, offset, count);
-                primitives.push(primitive(Some(indices), Some(self.material(kind))));
-                offset += 4 * count;
-            }
-        } else {
-            primitives.push(primitive(None, None));
-        }
-        let mut mesh = json!({ "primitives": primitives });
-        if !names.is_empty() {
-            mesh["extras"] = json!({ "attributes": names });
-        }
-        self.meshes.push(mesh);
-        Some(self.meshes.len() - 1)
-    }
-
-    /// The number of an accessor of indices.
-    fn indices(&mut self, view: usize, offset: u64, count: u64) -> usize {
-        self.accessors.push(json!({
-            "bufferView": view, "byteOffset": offset, "componentType": UNSIGNED_INT,
-            "count": count, "type": "SCALAR",
-        }));
-        self.accessors.len() - 1
-    }
-
-    /// The number of a type's material. Tracings of membranes are no metal, and shine little.
-    fn material(&mut self, kind: i32) -> usize {
-        *self.of_kinds.entry(kind).or_insert_with(|| {
-            // Finer than 8 bits, but for the darkest.
-            let [r, g, b] = linear(type_color(kind)).map(|light| (f64::from(light) * 1e4).round() / 1e4);
-            self.materials.push(json!({
-                "name": region_name(kind),
-                "pbrMetallicRoughness": {
-                    "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7,
-                },
-            }));
-            self.materials.len() - 1
-        })
-    }
-}
-
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const POINTS: u32 = 0;
-const TRIANGLES: u32 = 4;
