@@ -1,0 +1,3 @@
+//! Folders of precomputed data, byte by byte.
+
+neurotess_testing::main!();
