@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::{DAffine3, DVec3, Vec3};
-use neurotess_mesh::{Surface, SurfaceMesh, Watch};
+use neurotess_mesh::{CoarseMesh, Surface, SurfaceMesh, Watch};
 use neurotess_morphology::Morphology;
 use neurotess_recipe::{MeshError, MeshOptions, mesh_watched};
 use neurotess_refine::{LodCriterion, RefineOptions, Refinement};
@@ -19,9 +19,6 @@ use crate::skeleton::NM;
 /// From one level to the next.
 const COARSER: f32 = 4.0;
 
-/// Errors that are tried until the coarse mesh is fine enough. A guard: four to the twelfth is ten million.
-const TRIES: u32 = 12;
-
 /// Which levels cells have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelOptions {
@@ -32,10 +29,10 @@ pub struct LevelOptions {
 }
 
 impl Default for LevelOptions {
-    /// Four levels from 20 nm on.
+    /// Four levels from 40 nm on: two steps of the grid of a cell of 1.4 mm, below which errors would be the grid's.
     fn default() -> Self {
         Self {
-            max_error: 0.02,
+            max_error: 0.04,
             count: 4,
         }
     }
@@ -72,22 +69,26 @@ impl TemplateMesh {
         let coarse = &cell.generated.mesh;
         let refined = |criterion| Refinement::new(coarse, criterion, &RefineOptions::default());
         let coarsest = refined(LodCriterion::Homogeneous(1));
-        let mut planned = Vec::new();
-        let mut error = options.max_error;
-        for tried in 1..=TRIES {
-            let level = refined(LodCriterion::MaxError(error));
-            let is_coarsest = level.triangle_count() == coarsest.triangle_count();
-            if is_coarsest || planned.len() + 1 < options.count || options.count == 1 {
-                planned.push((level, error));
-            }
-            if is_coarsest || options.count == 1 {
+        let mut planned = vec![(
+            refined(LodCriterion::MaxError(options.max_error)),
+            options.max_error,
+        )];
+        while planned.len() < options.count {
+            let (finer, error) = &planned[planned.len() - 1];
+            if finer.triangle_count() == coarsest.triangle_count() {
                 break;
             }
-            error *= COARSER;
-            if tried == TRIES {
+            let error = COARSER * error;
+            let next = refined(LodCriterion::MaxError(error));
+            let is_coarsest = next.triangle_count() == coarsest.triangle_count();
+            if is_coarsest || planned.len() + 1 == options.count {
+                let error = coarse_error(coarse).max(error / COARSER);
                 planned.push((refined(LodCriterion::Homogeneous(1)), error));
+                break;
             }
+            planned.push((next, error));
         }
+        let origin = coarsest.origin();
         let made = planned.par_iter().map(|(surface, error)| {
             let mesh = SurfaceMesh::collect_watched(surface, &watch)
                 .map_err(|_stopped| MeshError::Stopped)?;
@@ -99,7 +100,7 @@ impl TemplateMesh {
         });
         Ok(Self {
             morphology,
-            origin: coarsest.origin(),
+            origin,
             levels: made.collect::<Result<_, MeshError>>()?,
         })
     }
@@ -129,6 +130,30 @@ impl TemplateMesh {
     }
 }
 
+/// How far (µm) the coarse mesh is from the smooth surface: in the middles of patches and their sides.
+fn coarse_error(coarse: &CoarseMesh) -> f32 {
+    let halved = Refinement::new(
+        coarse,
+        LodCriterion::Homogeneous(2),
+        &RefineOptions::default(),
+    );
+    let of_patch = |patch: usize| {
+        let at = |[i, j]: [u32; 2]| halved.grid_vertex(patch, i, j).position;
+        let off = |middle, ends: &[[u32; 2]]| {
+            let straight: Vec3 = ends.iter().map(|&end| at(end)).sum::<Vec3>() / ends.len() as f32;
+            at(middle).distance(straight)
+        };
+        let [a, b, c, d] = [[0, 0], [2, 0], [2, 2], [0, 2]];
+        off([1, 0], &[a, b])
+            .max(off([2, 1], &[b, c]))
+            .max(off([1, 2], &[c, d]))
+            .max(off([0, 1], &[d, a]))
+            .max(off([1, 1], &[a, b, c, d]))
+    };
+    let errors = (0..coarse.patches.len()).into_par_iter().map(of_patch);
+    errors.reduce(|| 0.0, f32::max)
+}
+
 #[cfg(test)]
 mod tests {
     use neurotess_formats::{ReadOptions, swc};
@@ -149,9 +174,9 @@ mod tests {
         assert_eq!(triangles.len(), 4);
         assert!(triangles.is_sorted_by(|a, b| a > b), "{triangles:?}");
         let errors: Vec<f32> = cell.levels.iter().map(|level| level.error).collect();
-        assert!(errors.is_sorted() && errors[0] == 0.02, "{errors:?}");
+        assert!(errors.is_sorted() && errors[0] == 0.04, "{errors:?}");
         let placed = cell.placed(DAffine3::from_scale(DVec3::splat(2.0)));
-        assert!((placed[0].error - 40.0).abs() < 1e-3);
+        assert!((placed[0].error - 80.0).abs() < 1e-3);
     }
 
     #[test]

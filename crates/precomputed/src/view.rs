@@ -38,7 +38,7 @@ impl View {
                 "segmentColors": colors,
                 "tab": "segments",
             }),
-            // Within the membranes: shown instead of them.
+            // Within the membranes, and seen where these are thinner than a pixel.
             json!({
                 "type": "segmentation",
                 "name": "skeletons",
@@ -46,7 +46,6 @@ impl View {
                 "linkedSegmentationGroup": "cells",
                 "linkedSegmentationColorGroup": false,
                 "skeletonRendering": {"shader": by_type(), "mode3d": "lines", "lineWidth3d": 2},
-                "visible": false,
             }),
         ];
         let (min, max) = self.bounds;

@@ -46,7 +46,7 @@ pub(crate) struct NeuroglancerArgs {
     #[arg(long, conflicts_with_all = ["resume", "shard"])]
     pub(crate) force: bool,
     /// How far the finest level may be from the smooth surface (µm)
-    #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = positive,
+    #[arg(long, value_name = "E", default_value_t = 0.04, value_parser = positive,
           allow_negative_numbers = true, help_heading = "Levels of detail")]
     pub(crate) max_error: f64,
     /// Most levels, 1 to 12: each has four times the error of the one before, the last is the coarse mesh
