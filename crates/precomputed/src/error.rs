@@ -36,6 +36,12 @@ pub enum ExportError {
     /// A file that all cells share was not written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// Synapses without places.
+    #[error("{0} has no places of synapses: leave it out")]
+    NoPlaces(String),
+    /// What a file of connections says.
+    #[error(transparent)]
+    Circuit(#[from] neurotess_circuit::CircuitError),
     /// There are no threads to be had.
     #[error(transparent)]
     Threads(#[from] ThreadError),

@@ -45,6 +45,8 @@ pub struct ExportReport {
     pub triangles: u64,
     /// Bytes of those that were written.
     pub bytes: u64,
+    /// Synapses that were written.
+    pub synapses: usize,
     /// Tracings that were not written.
     pub failures: Vec<Failure>,
     /// Inputs without any file.

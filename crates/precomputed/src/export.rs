@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use neurotess_batch::{Inputs, MORPHOLOGIES, Shard};
-use neurotess_circuit::Groups;
+use neurotess_circuit::{Edges, Groups};
 use neurotess_mesh::palette::Palette;
 use neurotess_mesh::palette::Rgb;
 
@@ -17,6 +17,7 @@ use crate::plan::{self, units};
 use crate::run::Run;
 use crate::shards::Sharding;
 use crate::source::Source;
+use crate::synapses;
 use crate::view::link_to;
 
 /// Most levels.
@@ -49,6 +50,7 @@ pub struct Export {
     workers: Option<usize>,
     url: String,
     color_by: String,
+    synapses: Vec<Edges>,
     stopped: Arc<AtomicBool>,
 }
 
@@ -83,6 +85,7 @@ impl Export {
             workers: None,
             url: LOCAL_URL.to_owned(),
             color_by: "population".to_owned(),
+            synapses: Vec::new(),
             stopped: Arc::default(),
         }
     }
@@ -148,6 +151,13 @@ impl Export {
         self
     }
 
+    /// Connections of the circuit whose synapses become annotations, those that have an end among the cells. They are in
+    /// memory, with all of their numbers.
+    pub fn synapses(mut self, edges: impl IntoIterator<Item = Edges>) -> Self {
+        self.synapses = edges.into_iter().collect();
+        self
+    }
+
     /// Ends soon after another thread sets this, without files of cells that are not whole.
     pub fn stopped_by(mut self, stopped: Arc<AtomicBool>) -> Self {
         self.stopped = stopped;
@@ -199,7 +209,11 @@ impl Export {
         let facts = run.facts()?;
         let table = run.table(&facts);
         run.infos(&table)?;
-        let view = run.view(&table, &self.url, &*self.colors())?;
+        if let Source::Circuit(circuit, instances) = &self.source {
+            let (folder, ids) = (run.folder, run.ids);
+            report.synapses = synapses::write(folder, circuit, instances, ids, &self.synapses)?;
+        }
+        let view = run.view(&table, &self.url, &*self.colors(), report.synapses > 0)?;
         report.link = link_to(&view.state());
         Ok(())
     }

@@ -13,6 +13,7 @@
 //! follows them, each with a test: [`multilod()`], `grid`, `cut`, `octree`, [`skeleton()`], [`write_properties`], [`Sharding`].
 #![forbid(unsafe_code)]
 
+mod annotations;
 mod cut;
 mod error;
 mod event;
@@ -33,6 +34,7 @@ mod shards;
 mod shared;
 mod skeleton;
 mod source;
+mod synapses;
 mod table;
 mod templates;
 mod view;

@@ -81,6 +81,7 @@ impl<'r> Run<'r> {
         table: &Table<'_>,
         url: &str,
         color: &dyn Fn(usize) -> Option<Rgb>,
+        synapses: bool,
     ) -> Result<View, OutputError> {
         let rows = table.cells.len();
         let shown = rows.min(SHOWN);
@@ -100,6 +101,7 @@ impl<'r> Run<'r> {
                 .iter()
                 .map(|&row| (table.ids[row], color(table.cells[row])))
                 .collect(),
+            synapses,
             bounds,
         };
         self.folder

@@ -4,6 +4,8 @@ use glam::DVec3;
 use neurotess_mesh::palette::{Palette, Rgb};
 use serde_json::{Map, Value, json};
 
+use crate::synapses::FOLDER;
+
 /// The public client; the state follows.
 const CLIENT: &str = "https://neuroglancer-demo.appspot.com/#!";
 
@@ -14,6 +16,8 @@ pub struct View {
     pub url: String,
     /// Segments that are shown, each perhaps in a color.
     pub segments: Vec<(u64, Option<Rgb>)>,
+    /// Whether there are annotations of synapses.
+    pub synapses: bool,
     /// Box (nm) around what is shown.
     pub bounds: (DVec3, DVec3),
 }
@@ -29,7 +33,7 @@ impl View {
             Some((id.to_string(), json!(format!("#{r:02x}{g:02x}{b:02x}"))))
         };
         let colors: Map<String, Value> = self.segments.iter().filter_map(color).collect();
-        let layers = [
+        let mut layers = vec![
             json!({
                 "type": "segmentation",
                 "name": "cells",
@@ -48,6 +52,15 @@ impl View {
                 "skeletonRendering": {"shader": by_type(), "mode3d": "lines", "lineWidth3d": 2},
             }),
         ];
+        if self.synapses {
+            layers.push(json!({
+                "type": "annotation",
+                "name": "synapses",
+                "source": source(FOLDER),
+                "linkedSegmentationLayer": {"pre": "cells", "post": "cells"},
+                "filterBySegmentation": ["post"],
+            }));
+        }
         let (min, max) = self.bounds;
         json!({
             "dimensions": {"x": [1e-9, "m"], "y": [1e-9, "m"], "z": [1e-9, "m"]},
@@ -104,6 +117,7 @@ mod tests {
         View {
             url: "https://example.org/cells/".into(),
             segments: vec![(720_575_940_623_456_789, Some([1, 2, 255])), (2, None)],
+            synapses: true,
             bounds: (DVec3::new(-10.0, 0.0, 4.0), DVec3::new(30.0, 10.0, 4.0)),
         }
     }
@@ -120,6 +134,10 @@ mod tests {
         assert_eq!(
             cells["segmentColors"],
             json!({"720575940623456789": "#0102ff"})
+        );
+        assert_eq!(
+            state["layers"][2]["linkedSegmentationLayer"]["post"],
+            "cells"
         );
         assert_eq!(state["position"], json!([10.0, 5.0, 4.0]));
         assert_eq!(state["projectionScale"], json!(48.0));

@@ -11,6 +11,7 @@ use clap::Args;
 use neurotess::batch::standard::is_standard;
 use neurotess::batch::workers::NotedPanics;
 use neurotess::batch::{Inputs, MORPHOLOGIES, Shard};
+use neurotess::circuit::{Circuit, Edges};
 use neurotess::options::groups::CellSelection;
 use neurotess::precomputed::{
     Event, Export, ExportError, ExportReport, LevelOptions, Server, link_to,
@@ -68,6 +69,14 @@ pub(crate) struct NeuroglancerArgs {
     /// Color cells by an attribute of their nodes [default: population]
     #[arg(long, value_name = "NAME", help_heading = "View")]
     pub(crate) color_by: Option<String>,
+    /// Synapses of these populations of connections as annotations, as in A,B; or all
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        help_heading = "View"
+    )]
+    pub(crate) synapses: Vec<String>,
     /// Where browsers will find FOLDER: https://…, gs://… or s3://… [default: where --serve serves it]
     #[arg(long, value_name = "URL", help_heading = "View")]
     pub(crate) url: Option<String>,
@@ -87,6 +96,7 @@ struct Document {
     kept: usize,
     triangles: u64,
     bytes: u64,
+    synapses: usize,
     link: String,
     failed: Vec<Failed>,
 }
@@ -159,6 +169,7 @@ fn write(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<String>
         kept: report.kept,
         triangles: report.triangles,
         bytes: report.bytes,
+        synapses: report.synapses,
         link: report.link.clone(),
         failed: failed.collect(),
     })?;
@@ -181,13 +192,17 @@ fn export_of(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<Opt
             }
         };
         let instances = circuits::instances(&circuit, &nodes, reporter);
-        return Ok(Some(Export::of_circuit(Arc::new(circuit), instances)));
+        let edges = synapses_of(args, &circuit)?;
+        let export = Export::of_circuit(Arc::new(circuit), instances);
+        return Ok(Some(export.synapses(edges)));
     }
     if !circuits.is_empty() {
         return usage("a circuit is written alone: leave out the other inputs");
     }
-    if args.cells.any() || args.color_by.is_some() {
-        return usage("no input is a circuit: leave out what chooses or colors cells of one");
+    if args.cells.any() || args.color_by.is_some() || !args.synapses.is_empty() {
+        return usage(
+            "no input is a circuit: leave out --color-by, --synapses and what chooses cells",
+        );
     }
     if args.inputs.iter().any(|input| is_standard(input)) {
         return usage("standard input cannot be read twice: name a file");
@@ -195,6 +210,26 @@ fn export_of(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<Opt
     let found = Inputs::find(&args.inputs, &MORPHOLOGIES);
     inputs::tell(&found, reporter);
     Ok(Some(Export::of(found)))
+}
+
+/// The populations of connections that are asked for.
+fn synapses_of(args: &NeuroglancerArgs, circuit: &Circuit) -> anyhow::Result<Vec<Edges>> {
+    if let [all] = &args.synapses[..]
+        && all == "all"
+    {
+        return Ok(circuit.edges.clone());
+    }
+    let named = |name: &String| {
+        let found = circuit.edges.iter().find(|edges| edges.name == *name);
+        found.cloned().map_or_else(
+            || {
+                let there: Vec<&str> = circuit.edges.iter().map(|edges| &*edges.name).collect();
+                usage(format!("--synapses {name}: there are {}", there.join(", ")))
+            },
+            Ok,
+        )
+    };
+    args.synapses.iter().map(named).collect()
 }
 
 /// Does what is to be done, and reports it.
