@@ -156,8 +156,8 @@ fn write(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<String>
     if let Some(shard) = args.shard {
         export = export.part(shard);
     }
-    let report = follow(export, reporter)?;
     let out = args.out.display().to_string();
+    let report = follow(export, &out, reporter)?;
     tell(&report, &out, clock, reporter);
     let failed = report.failures.iter().map(|failure| Failed {
         file: failure.file.display().to_string(),
@@ -233,7 +233,7 @@ fn synapses_of(args: &NeuroglancerArgs, circuit: &Circuit) -> anyhow::Result<Vec
 }
 
 /// Does what is to be done, and reports it.
-fn follow(export: Export, reporter: &Reporter) -> anyhow::Result<ExportReport> {
+fn follow(export: Export, out: &str, reporter: &Reporter) -> anyhow::Result<ExportReport> {
     let progress = Progress::new(reporter, 0, "cells");
     let noted = NotedPanics::begin();
     let done = AtomicUsize::new(0);
@@ -256,16 +256,14 @@ fn follow(export: Export, reporter: &Reporter) -> anyhow::Result<ExportReport> {
         _ => {}
     };
     let report = export.run(told).map_err(|error| match error {
-        ExportError::Other(folder) => {
-            let folder = folder.display();
-            Usage(format!("{folder} was written from other cells, or with other options: give another folder, or --force")).into()
-        }
-        ExportError::Exists(folder) => {
-            let folder = folder.display();
-            Usage(format!("{folder} was written before: --resume finishes it, --force writes it anew")).into()
-        }
+        ExportError::Other(_) => anyhow::anyhow!(
+            "{out} was written from other cells, or with other options: give another folder, or --force"
+        ),
+        ExportError::Exists(_) => anyhow::anyhow!(
+            "{out} was written before: --resume finishes it, --force writes it anew"
+        ),
         ExportError::Ids(error) => Usage(error.to_string()).into(),
-        other => anyhow::Error::from(other),
+        other => other.into(),
     });
     drop((noted, progress));
     report
