@@ -160,10 +160,12 @@ def test_synapses_are_read(circuit_folder: Path, tmp_path: Path) -> None:
     cloudvolume = pytest.importorskip("cloudvolume.cloudvolume")
     folder = written(tmp_path / "out", circuit_folder, "--max-error", 0.5, "--lods", 1, "--synapses", "all")
     points = cloudvolume.from_cloudpath(f"precomputed://file://{folder}/synapses")
-    circuit = nt.Circuit(circuit_folder)
-    assert len(points.get_all().geometry) == 12 * 9, circuit
+    everything = points.get_all()
+    assert len(everything.geometry) == 12 * 9
     behind = points.get_by_relationship("post", 5)
     assert len(behind.geometry) == 9
+    assert {tuple(place) for place in behind.geometry} < {tuple(place) for place in everything.geometry}
+    assert (everything.properties["delay"] > 0.4).all()
 
 
 @contextmanager

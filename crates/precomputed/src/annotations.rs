@@ -10,6 +10,7 @@ use glam::DVec3;
 use neurotess_output::OutputError;
 use serde_json::{Value, json};
 
+use crate::facts::around;
 use crate::folder::Folder;
 use crate::murmur::murmur;
 use crate::shards::{ShardWriter, Sharding};
@@ -96,10 +97,12 @@ impl Points {
         bytes
     }
 
+    /// A box around all, of whole numbers, and of whole cells at all levels: with others cloud-volume finds nothing.
     fn bounds(&self) -> (DVec3, DVec3) {
-        let (min, max) = crate::facts::around(self.places.iter().copied());
-        // A grid needs sides.
-        (min, max.max(min + DVec3::ONE))
+        let (min, max) = around(self.places.iter().copied());
+        let min = min.floor();
+        let most = f64::from(1_u32 << MOST_LEVELS);
+        (min, min + ((max - min + DVec3::ONE) / most).ceil() * most)
     }
 
     /// Points by cell of a grid, level by level, each of which has twice as many cells along each axis. A cell gets the
