@@ -23,7 +23,7 @@ pub enum Column<'c> {
     },
     /// A number, NaN where there is none.
     Number {
-        /// Its name, as [`number_name`] makes it.
+        /// Its name: letters, digits and `_`, a letter first.
         name: String,
         /// What it is, with its unit.
         description: String,

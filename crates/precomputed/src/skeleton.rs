@@ -5,7 +5,7 @@
 //! and radii are in nm at their places: nobody scales radii by a transform.
 
 use glam::DAffine3;
-use neurotess_morphology::{Attachment, Morphology, shape};
+use neurotess_morphology::{Attachment, Morphology, SectionId, shape};
 use serde_json::{Value, json};
 
 use crate::shards::Sharding;
@@ -64,7 +64,7 @@ pub fn skeleton(morphology: &Morphology, world_from_cell: DAffine3) -> Vec<u8> {
     let ends = shape::path_lengths(morphology);
     for (index, section) in morphology.sections.iter().enumerate() {
         let mut distance = section.parent().map_or(0.0, |parent| ends[parent.index()]);
-        let parent = section.parent().map(|parent| parent.index());
+        let parent = section.parent().map(SectionId::index);
         let mut before = parent.and_then(|parent| morphology.sections[parent].range().last());
         for point in section.range() {
             let here = &morphology.points[point];

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use neurotess_precomputed::{Event, Export, ExportError};
 use neurotess_recipe::Spelling;
+use neurotess_testing::full;
 
 use crate::Folders;
 use crate::circuits::many;
