@@ -168,6 +168,23 @@ def test_synapses_are_read(circuit_folder: Path, tmp_path: Path) -> None:
     assert (everything.properties["delay"] > 0.4).all()
 
 
+def test_python_writes_what_the_command_does(cell_file: Path, circuit_folder: Path, tmp_path: Path) -> None:
+    made = nt.neuroglancer(cell_file, tmp_path / "python")
+    assert (made["written"], made["kept"], made["failed"]) == (1, 0, [])
+    command_made = written(tmp_path / "command", cell_file)
+    name = f"mesh/{cell_file.stem}"
+    assert (tmp_path / "python" / name).read_bytes() == (command_made / name).read_bytes()
+    with pytest.raises(FileExistsError, match="resume=True"):
+        nt.neuroglancer(cell_file, tmp_path / "python")
+    assert nt.neuroglancer(cell_file, tmp_path / "python", resume=True)["kept"] == 1
+    with pytest.raises(ValueError, match="Circuit"):
+        nt.neuroglancer(cell_file, tmp_path / "no", color_by="layer")
+    circuit = nt.Circuit(circuit_folder)
+    options: dict[str, Any] = {"max_error": 0.5, "lods": 1, "synapses": ["cortex__cortex__chemical"]}
+    some = nt.neuroglancer(circuit, tmp_path / "circuit", nodes=[3, 5], sharded=True, **options)
+    assert some["written"] == 2 and some["synapses"] >= 18
+
+
 @contextmanager
 def served(folder: Path, port: int) -> Iterator[None]:
     server = subprocess.Popen([*command("-o", folder), "--serve", "--port", str(port)], stderr=subprocess.PIPE)
