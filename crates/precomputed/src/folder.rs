@@ -51,20 +51,23 @@ impl Folder {
     /// Begins the work of a plan.
     pub(crate) fn begin(&self, plan: &str, before: Before) -> Result<(), ExportError> {
         let path = self.path(PLAN);
+        // Looked for first: where another process has begun, its plan is there before all else.
+        let names = [MESH, SKELETONS, "properties", "info", "view.json"];
+        let is_there = names.iter().any(|name| self.path(name).exists());
         let found = fs::read(&path).ok();
         let is_ours = found.is_some();
         let is_same = found.as_deref() == Some(plan.as_bytes());
-        let names = [MESH, SKELETONS, "properties", "info", "view.json"];
         match before {
             Before::Keep if is_same => return Ok(()),
             Before::Keep if is_ours => return Err(ExportError::Other(self.root.clone())),
-            Before::Replace if is_ours => {
-                // Without it first, so that a run that is killed leaves nothing that looks right.
-                fs::remove_file(&path).map_err(|e| OutputError::broken(&path, e))?;
+            Before::Replace => {
+                // The plan first, so that a run that is killed leaves nothing that looks right.
+                if is_ours {
+                    fs::remove_file(&path).map_err(|e| OutputError::broken(&path, e))?;
+                }
                 self.clear()?;
             }
-            Before::Replace => {}
-            _ if is_ours || names.iter().any(|name| self.path(name).exists()) => {
+            _ if is_ours || is_there => {
                 return Err(ExportError::Exists(self.root.clone()));
             }
             _ => {}

@@ -103,7 +103,7 @@ impl Server {
             .find(|header| header.field.equiv("Range"));
         let Some(asked) = asked else {
             let response = Response::new(StatusCode(200), shared(), file, length(bytes), None);
-            return request.respond(response);
+            return request.respond(response.with_chunked_threshold(usize::MAX));
         };
         let Some((first, last)) = range(asked.value.as_str(), bytes) else {
             let mut response = empty(416);
@@ -116,13 +116,9 @@ impl Server {
         let part = format!("bytes {first}-{last}/{bytes}");
         headers.push(header("Content-Range", &part));
         let part = file.take(count);
-        request.respond(Response::new(
-            StatusCode(206),
-            headers,
-            part,
-            length(count),
-            None,
-        ))
+        let response = Response::new(StatusCode(206), headers, part, length(count), None);
+        // With its length, however long.
+        request.respond(response.with_chunked_threshold(usize::MAX))
     }
 
     /// The file of a URL, if it is a regular one below the folder, and its bytes.

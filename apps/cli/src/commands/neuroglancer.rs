@@ -32,9 +32,10 @@ use crate::report::{Failed, Failure, Progress, Reporter, Usage, count, usage};
   neurotess neuroglancer circuit/ -o shared/ --sharded --shard $SLURM_ARRAY_TASK_ID/100
   neurotess neuroglancer -o shared/ --serve      (what was written before)
 
-Segments: of a circuit the node's id + 1, and 10^12 more for each population before its own; of files
-their names if all are numbers, else 1, 2, 3 in their order. Lengths in the files are nanometers.
-FOLDER gets mesh/, skeletons/, properties/ and view.json, a state that shows up to 100 cells.")]
+Segments: of a circuit the node's id + 1, and 10^12 more for each population before its own;
+of files their names if all are numbers, else 1, 2, 3 in their order. Lengths in the files are
+nanometers. FOLDER gets mesh/, skeletons/, properties/ and view.json, a state that shows up to
+100 cells.")]
 pub(crate) struct NeuroglancerArgs {
     /// Morphology files, folders (searched recursively) or globs; or one circuit, whose cells are written in
     /// its coordinates

@@ -102,6 +102,14 @@ fn other_cells_are_not_mixed_in() {
     assert_eq!(report.written, 2);
     let files = folders.files("out");
     assert!(!files.contains_key("mesh/1") && files.contains_key("mesh/3.index"));
+    // Nor where a run was killed before it wrote down what it is of.
+    fs::remove_file(folders.path("out/neurotess.json")).expect("removed");
+    fs::write(folders.path("out/mesh/9"), "old").expect("written");
+    let refused = folders.export("out").resume(true).run(|_| ());
+    assert!(matches!(refused, Err(ExportError::Exists(_))));
+    let export = folders.export("out").replace(true);
+    assert_eq!(export.run(|_| ()).expect("written").written, 2);
+    assert!(!folders.path("out/mesh/9").exists());
 }
 
 #[neurotess_testing::test]

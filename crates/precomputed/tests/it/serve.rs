@@ -27,6 +27,7 @@ fn parts_of_files_are_served_to_any_page() {
     fs::create_dir(folder.path().join("served")).expect("made");
     fs::write(folder.path().join("secret"), "no").expect("written");
     fs::write(folder.path().join("served/a b"), "0123456789").expect("written");
+    fs::write(folder.path().join("served/long"), vec![7; 100_000]).expect("written");
     #[cfg(unix)]
     std::os::unix::fs::symlink(
         folder.path().join("secret"),
@@ -47,6 +48,10 @@ fn parts_of_files_are_served_to_any_page() {
         let (head, body) = answer(&url, "GET /a%20b?x=1 HTTP/1.1");
         assert!(head.starts_with("HTTP/1.1 200"), "{head}");
         assert_eq!(body, b"0123456789");
+        // Long ones too have their length.
+        let (head, body) = answer(&url, "GET /long HTTP/1.1\r\nRange: bytes=1-99999");
+        assert!(head.contains("Content-Length: 99999"), "{head}");
+        assert_eq!(body.len(), 99_999);
         let status = |request: &str| {
             let (head, _) = answer(&url, request);
             assert!(head.contains("Access-Control-Allow-Origin: *"), "{head}");
