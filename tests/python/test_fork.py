@@ -44,6 +44,7 @@ functions = {
     "mesh for simulators": lambda: nt.mesh(cell, simulation=True),
     "mesh_many": lambda: [r.mesh for r in nt.mesh_many([cell, cell], level=1)],
     "mesh_all": lambda: nt.mesh_all(path, os.path.join(work, "all"), level=1, overwrite=True),
+    "neuroglancer": lambda: nt.neuroglancer(path, os.path.join(work, "shared"), lods=1, overwrite=True),
     "read_mesh": lambda: nt.read_mesh(mesh_path),
     "check": lambda: nt.check(mesh),
     "html": lambda: nt.html([cell, cell]),

@@ -106,6 +106,19 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "neurotess-precomputed",
+        &[
+            "neurotess-morphology",
+            "neurotess-formats",
+            "neurotess-circuit",
+            "neurotess-mesh",
+            "neurotess-refine",
+            "neurotess-recipe",
+            "neurotess-output",
+            "neurotess-batch",
+        ],
+    ),
+    (
         "neurotess-web",
         &[
             "neurotess-morphology",
@@ -175,6 +188,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-union",
             "neurotess-recipe",
             "neurotess-batch",
+            "neurotess-precomputed",
             "neurotess-web",
         ],
     ),

@@ -13,6 +13,7 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess", "xml"),
     ("neurotess", "json"),
     ("neurotess", "circuit"),
+    ("neurotess", "precomputed"),
     ("neurotess", "synth"),
     ("neurotess", "synth,circuit"),
     ("neurotess", "render"),

@@ -7,6 +7,7 @@ use crate::commands::convert::{self, ConvertArgs};
 use crate::commands::diff::{self, DiffArgs};
 use crate::commands::info::{self, InfoArgs};
 use crate::commands::mesh::{self, MeshArgs};
+use crate::commands::neuroglancer::{self, NeuroglancerArgs};
 #[cfg(feature = "render")]
 use crate::commands::render::{self, RenderArgs};
 use crate::commands::synth::{self, SynthArgs};
@@ -77,6 +78,8 @@ pub(crate) enum Command {
     /// Open the window: look, pick, tune somata, save
     #[cfg(feature = "view")]
     View(ViewArgs),
+    /// Write cells as neuroglancer opens them: meshes, skeletons, properties, a link
+    Neuroglancer(Box<NeuroglancerArgs>),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume
     Check(CheckArgs),
     /// Write morphologies in another format, and mend them
@@ -119,6 +122,7 @@ impl Cli {
         match &self.command {
             Some(Command::Info(args)) => info::run(args, reporter),
             Some(Command::Mesh(args)) => mesh::run(args, reporter),
+            Some(Command::Neuroglancer(args)) => neuroglancer::run(args, reporter),
             Some(Command::Check(args)) => check::run(args, reporter),
             Some(Command::Convert(args)) => convert::run(args, reporter),
             Some(Command::Diff(args)) => diff::run(args, reporter),

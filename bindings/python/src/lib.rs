@@ -20,6 +20,7 @@ mod circuit;
 mod command;
 mod errors;
 mod json;
+mod neuroglancer;
 mod options;
 #[cfg(feature = "gpu")]
 mod page;
@@ -51,6 +52,7 @@ fn neurotess_python(module: &Bound<'_, PyModule>) -> PyResult<()> {
     #[cfg(feature = "gpu")]
     page::add_to(module)?;
     module.add_function(wrap_pyfunction!(batch::mesh_all, module)?)?;
+    module.add_function(wrap_pyfunction!(neuroglancer::neuroglancer, module)?)?;
     module.add_function(wrap_pyfunction!(cell::diff, module)?)?;
     module.add_function(wrap_pyfunction!(cell::allow_large, module)?)?;
     module.add_function(wrap_pyfunction!(command::main, module)?)

@@ -31,6 +31,11 @@ impl Shard {
         }
     }
 
+    /// Whether it is the first of the parts, which does what is to be done once.
+    pub fn is_first(self) -> bool {
+        self.index == 0
+    }
+
     /// Every N-th item, from the I-th on.
     pub fn of<T>(self, items: Vec<T>) -> Vec<T> {
         items

@@ -96,7 +96,10 @@ pub fn run<I: Sync, T: Send>(
 }
 
 /// What work gives, or what its panic says.
-pub(crate) fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+///
+/// # Errors
+/// The panic's text; with its place if [`NotedPanics`] are.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let caught = panic::catch_unwind(AssertUnwindSafe(work));
     caught.map_err(|payload: Box<dyn Any + Send>| {
         // A panic in another thread of the pool comes without its location.

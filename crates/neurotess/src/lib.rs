@@ -77,6 +77,7 @@
 //! | [`mesh`](mod@mesh) | coarse meshes, surfaces, checks, mesh files | |
 //! | [`recipe`] | from a tracing to the mesh that a purpose needs, and its files: all stages by one value of options | |
 //! | [`batch`] | many tracings, or the cells of a circuit, meshed into a folder | cells of circuits: `circuit` |
+//! | [`precomputed`] | tracings and circuits as neuroglancer opens them | `precomputed` |
 //! | [`output`] | files that are there whole or not at all | |
 //! | [`plot`] | plots of numbers and of measures, as SVG and CSV | |
 //!
@@ -105,6 +106,8 @@ pub use neurotess_output as output;
 #[cfg(feature = "options")]
 pub use neurotess_picture as picture;
 pub use neurotess_plot as plot;
+#[cfg(feature = "precomputed")]
+pub use neurotess_precomputed as precomputed;
 #[cfg(feature = "render")]
 pub use neurotess_raster as raster;
 pub use neurotess_recipe as recipe;

@@ -11,6 +11,7 @@ pub(crate) mod html;
 pub(crate) mod info;
 pub(crate) mod man;
 pub(crate) mod mesh;
+pub(crate) mod neuroglancer;
 #[cfg(feature = "render")]
 pub(crate) mod render;
 pub(crate) mod synth;

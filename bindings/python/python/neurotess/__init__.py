@@ -18,6 +18,7 @@ leaves the interpreter to other threads, and Ctrl-C stops it.
 | judge a mesh | `Mesh.check`, `check`, `read_mesh` |
 | draw it | `render`, `film`, `Image`, `View` |
 | send it as one HTML page | `html` |
+| open it in neuroglancer | `neuroglancer` |
 | use a circuit and its recordings | `Circuit`, `Report` |
 | plot numbers of it | `neurotess.plot` |
 | mesh on a cluster | `neurotess.dask` |
@@ -47,6 +48,7 @@ from ._edits import diff, edit
 from ._meshes import Mesh, check, read_mesh
 from ._meshing import Failed, Meshed, MeshResult, mesh, mesh_all, mesh_many
 from ._circuits import Circuit
+from ._neuroglancer import neuroglancer
 from ._reports import Report
 from ._pages import html
 from ._images import Film, Image
@@ -103,6 +105,7 @@ __all__ = [
     "mesh",
     "mesh_all",
     "mesh_many",
+    "neuroglancer",
     "read",
     "read_mesh",
     "render",

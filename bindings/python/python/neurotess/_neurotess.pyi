@@ -26,6 +26,7 @@ __all__ = [
     "diff",
     "allow_large",
     "mesh_all",
+    "neuroglancer",
     "color_scale",
     "page",
     "png",
@@ -113,6 +114,9 @@ class Edits:
 
 def allow_large() -> None: ...
 def mesh_all(recipe: Recipe, inputs: list[str], folder: str, wanted: dict[str, Any]) -> list[dict[str, Any]]: ...
+def neuroglancer(
+    circuit: Circuit | None, inputs: list[str], nodes: list[tuple[int, int]], folder: str, wanted: dict[str, Any]
+) -> dict[str, Any]: ...
 def diff(first: Cell, second: Cell, tolerance: float, samples: int | None) -> dict[str, Any]: ...
 @final
 class Recipe:

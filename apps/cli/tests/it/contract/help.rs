@@ -9,6 +9,7 @@ fn help_is_as_agreed() {
         "",
         "info",
         "mesh",
+        "neuroglancer",
         "render",
         "html",
         "check",
@@ -57,6 +58,13 @@ fn wrong_usage_exits_with_2() {
         "synth star -o cell.swc --points 5",
         "convert cell.swc -o cell.traces",
         "convert cell.swc -o cell",
+        "neuroglancer cell.swc",
+        "neuroglancer -o out",
+        "neuroglancer cell.swc -o out --max-error 0",
+        "neuroglancer cell.swc -o out --lods 13",
+        "neuroglancer cell.swc -o out --shard 4/3",
+        "neuroglancer cell.swc -o out --color-by layer",
+        "neuroglancer - -o out",
     ] {
         let run = work.run(wrong).exits(2);
         assert!(run.stdout().is_empty(), "{wrong}");

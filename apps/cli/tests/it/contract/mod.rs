@@ -18,6 +18,7 @@ mod like;
 mod markers;
 mod mesh;
 mod meshes;
+mod neuroglancer;
 #[cfg(feature = "gpu")]
 mod options;
 mod palettes;

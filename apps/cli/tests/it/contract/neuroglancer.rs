@@ -1,0 +1,119 @@
+//! `neurotess neuroglancer`: what the command says, and what becomes of folders that are there. What is in them is tested in
+//! `crates/precomputed`, and by other people's programs in `tests/python/test_neuroglancer.py`.
+
+use crate::work::{BROKEN, SMALL, Work};
+
+#[neurotess_testing::test]
+fn cells_become_a_folder_and_a_link() {
+    let work = Work::new();
+    work.file("in/a.swc", SMALL);
+    work.file("in/720575940623456789.swc", SMALL);
+    let run = work
+        .run("neuroglancer in -o out --url gs://bucket/out")
+        .exits(0);
+    let link = run.stdout();
+    assert!(link.starts_with("https://neuroglancer-demo.appspot.com/#!%7B"));
+    assert!(link.contains("precomputed%3A%2F%2Fgs%3A%2F%2Fbucket%2Fout%2Fmesh"));
+    assert!(run.stderr().contains("2 cells → out: "), "{}", run.stderr());
+    // Numbered, since not all names are numbers.
+    assert!(work.path("out/mesh/2.index").is_file());
+    work.run("neuroglancer in/720575940623456789.swc -o em")
+        .exits(0);
+    assert!(work.path("em/skeletons/720575940623456789").is_file());
+    let view = work.text("em/view.json");
+    assert!(view.contains("\"720575940623456789\""));
+    assert!(view.contains("precomputed://http://127.0.0.1:9000/mesh"));
+}
+
+#[neurotess_testing::test]
+fn what_is_there_is_finished_or_replaced_on_request() {
+    let work = Work::new();
+    work.file("a.swc", SMALL);
+    work.run("neuroglancer a.swc -o out").exits(0);
+    let told = work.run("neuroglancer a.swc -o out").exits(1).stderr();
+    assert!(
+        told.contains("--resume") && told.contains("--force"),
+        "{told}"
+    );
+    let run = work
+        .run("neuroglancer a.swc -o out --resume --json")
+        .exits(0);
+    assert_eq!(
+        (&run.json()["written"], &run.json()["kept"]),
+        (&0.into(), &1.into())
+    );
+    let other = work
+        .run("neuroglancer a.swc -o out --resume --lods 2")
+        .exits(1);
+    assert!(
+        other.stderr().contains("other options"),
+        "{}",
+        other.stderr()
+    );
+    work.run("neuroglancer a.swc -o out --force --lods 2")
+        .exits(0);
+}
+
+#[neurotess_testing::test]
+fn a_cell_that_fails_is_told_of_and_the_others_are_written() {
+    let work = Work::new();
+    work.file("in/a.swc", SMALL);
+    work.file("in/b.swc", BROKEN);
+    let run = work.run("neuroglancer in -o out --json").exits(1);
+    assert_eq!(run.json()["written"], 1);
+    assert_eq!(run.json()["failed"].as_array().map(Vec::len), Some(1));
+    assert!(run.stderr().contains("b.swc:2:"), "{}", run.stderr());
+}
+
+#[neurotess_testing::test]
+fn a_circuit_is_sharded_and_has_its_synapses() {
+    let work = Work::new();
+    work.run("synth circuit -o c --neurons 12 --morphologies 2 --points 60 --synapses 2")
+        .exits(0);
+    let run = work
+        .run("neuroglancer c -o out --sharded --max-error 0.5 --lods 2 --synapses all --json")
+        .exits(0);
+    let told = run.json();
+    assert_eq!(
+        (&told["written"], &told["synapses"]),
+        (&12.into(), &24.into())
+    );
+    assert_eq!(work.names("out/mesh"), ["0.shard", "info"]);
+    let wrong = work
+        .run("neuroglancer c -o no --synapses gap")
+        .exits(2)
+        .stderr();
+    assert!(wrong.contains("cortex__cortex__chemical"), "{wrong}");
+}
+
+/// Killed in the middle, and finished: the same bytes.
+#[cfg(unix)]
+#[neurotess_testing::test]
+fn a_killed_run_is_finished() {
+    let work = Work::new();
+    for n in 0..40 {
+        work.file(&format!("in/{n}.swc"), SMALL);
+    }
+    let mut child = work
+        .command("neuroglancer in -o out --threads 1")
+        .spawn()
+        .expect("it starts");
+    while !work.path("out/skeletons/4").is_file() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("it ended");
+    work.run("neuroglancer in -o out --resume").exits(0);
+    work.run("neuroglancer in -o whole").exits(0);
+    let bytes = |folder: &str, name: &str| {
+        let file = work.path(folder).join(name);
+        std::fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
+    };
+    for folder in ["mesh", "skeletons", "properties"] {
+        let names = work.names(&format!("whole/{folder}"));
+        for name in names {
+            let name = format!("{folder}/{name}");
+            assert!(bytes("out", &name) == bytes("whole", &name), "{name}");
+        }
+    }
+}

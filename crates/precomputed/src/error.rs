@@ -1,0 +1,101 @@
+//! Why cells, or a whole folder, were not written.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use neurotess_batch::InputError;
+use neurotess_batch::workers::ThreadError;
+use neurotess_mesh::draco::DracoError;
+use neurotess_output::OutputError;
+use neurotess_recipe::{MeshError, Spelling};
+
+use crate::source::IdError;
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// It was not said where files go.
+    #[error("it is not said where files go: give a folder")]
+    NoFolder,
+    /// No error of levels, or none of them.
+    #[error("levels need an error above 0 and a number from 1 to 12")]
+    Levels,
+    /// No cell is there to be written.
+    #[error("there is no cell to write")]
+    Empty,
+    /// Cells cannot be told apart.
+    #[error(transparent)]
+    Ids(#[from] IdError),
+    /// The folder has files of other cells or options.
+    #[error("{} was written from other cells, or with other options: give another folder, or let it be replaced", .0.display())]
+    Other(PathBuf),
+    /// The folder has been written.
+    #[error("{} was written before: resume it, or let it be replaced", .0.display())]
+    Exists(PathBuf),
+    /// A file that all cells share was not written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Synapses without places.
+    #[error("{0} has no places of synapses: leave it out")]
+    NoPlaces(String),
+    /// What a file of connections says.
+    #[error(transparent)]
+    Circuit(#[from] neurotess_circuit::CircuitError),
+    /// There are no threads to be had.
+    #[error(transparent)]
+    Threads(#[from] ThreadError),
+}
+
+/// Why a tracing was not written; `FILE:LINE: what: what to do`.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The tracing.
+    pub file: PathBuf,
+    /// How many cells have it.
+    pub cells: usize,
+    pub(crate) fault: Arc<Fault>,
+}
+
+/// What went wrong with a tracing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// It was not read.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// There is no mesh of it.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// It was not encoded.
+    #[error(transparent)]
+    Draco(#[from] DracoError),
+    /// Its files were not written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A fault of ours.
+    #[error("{0}: a fault of neurotess, please report it")]
+    Bug(String),
+}
+
+impl Failure {
+    /// What went wrong.
+    pub fn fault(&self) -> &Fault {
+        &self.fault
+    }
+
+    /// What is wrong, and what to do, with options named as whoever set them wrote them.
+    pub fn told(&self, spelling: Spelling) -> String {
+        let file = self.file.display();
+        let told = match &*self.fault {
+            // The reader's errors begin with the file.
+            Fault::Input(error) => error.to_string(),
+            Fault::Mesh(error) => format!("{file}: {}", error.told(spelling)),
+            other => format!("{file}: {other}"),
+        };
+        match self.cells {
+            1 => told,
+            cells => format!("{told} (in {cells} cells)"),
+        }
+    }
+}
