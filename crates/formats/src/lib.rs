@@ -88,7 +88,7 @@ use neurotess_morphology::Morphology;
 
 pub use error::{Fault, ReadError};
 pub use format::{EXTENSIONS, Format, has_known_name};
-pub use packed::unpacked_name;
+pub use packed::{unpacked, unpacked_name};
 pub use recognize::is_json_tracing;
 pub use regular::{read_regular, regular};
 use text::Located;
@@ -166,7 +166,7 @@ fn read_member(
     member: &str,
     options: &ReadOptions,
 ) -> Result<Read, ReadError> {
-    let bytes = packed::unpacked(bytes).map_err(|fault| ReadError::of_file(name, fault))?;
+    let bytes = unpacked(bytes).map_err(|fault| ReadError::of_file(name, fault))?;
     match recognize::format(&bytes, None).unwrap_or(Format::H5) {
         #[cfg(feature = "json")]
         Format::MouseLight => json::mouselight::read_member(&bytes, name, member, options),
@@ -190,7 +190,7 @@ pub fn read_bytes(
     format: Option<Format>,
     options: &ReadOptions,
 ) -> Result<Read, ReadError> {
-    let bytes = match packed::unpacked(bytes) {
+    let bytes = match unpacked(bytes) {
         Ok(bytes) => bytes,
         Err(fault) => return Err(ReadError::of_file(name, fault)),
     };

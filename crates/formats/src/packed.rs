@@ -11,7 +11,10 @@ use crate::{Fault, budget};
 const GZIP: &[u8] = b"\x1f\x8b";
 
 /// The content of a file of gzip, and any other as it is.
-pub(crate) fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, Fault> {
+///
+/// # Errors
+/// It is not whole, or would be far larger than itself: see [`budget`].
+pub fn unpacked(bytes: Vec<u8>) -> Result<Vec<u8>, Fault> {
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }

@@ -65,6 +65,9 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
             let nothing = |head: &[u8]| head.len() > 1 << 15 && head.iter().all(|&byte| byte == 0);
             mesh::read_bytes(&standard_input(nothing).map_err(InputError::from)?, format)
         }
+        (false, None) if let Some(read) = precomputed(&input.path) => {
+            return read.map(|surface| verdict(file, surface, args));
+        }
         (false, Some(format)) => mesh::read_as(&input.path, format),
         (false, None) => mesh::read(&input.path),
     };

@@ -1,5 +1,7 @@
 //! Meshes of a picture that are no cells.
 
+use std::path::Path;
+
 use itertools::Itertools;
 use neurotess_color::{MeshValues, mesh_color};
 use neurotess_mesh::{self as mesh, SurfaceMesh};
@@ -25,6 +27,15 @@ struct SceneMesh {
     points: Vec<BoundingSphere>,
 }
 
+/// The mesh of a file, or of neuroglancer's folders.
+fn read(file: &Path) -> Result<SurfaceMesh, String> {
+    #[cfg(feature = "precomputed")]
+    if let Some(read) = neurotess_precomputed::read_mesh(file) {
+        return read.map_err(|e| format!("{}: {e}", file.display()));
+    }
+    mesh::read(file).map_err(|e| e.in_file(&file.display().to_string()))
+}
+
 /// What the colors of a mesh are looked up by.
 pub(crate) enum MeshKeys {
     /// One for all of it.
@@ -44,12 +55,11 @@ impl SceneMeshes {
         host: &dyn Host,
     ) -> Result<Self, DrawError> {
         let there = surfaces.into_iter().chain(std::iter::repeat_with(|| None));
-        let read = |(look, there): (&MeshBeside, Option<SurfaceMesh>)| {
+        let shown = |(look, there): (&MeshBeside, Option<SurfaceMesh>)| {
             let file = look.file.display();
             let surface = match there {
                 Some(surface) => surface,
-                None => mesh::read(&look.file)
-                    .map_err(|e| DrawError::Failed(e.in_file(&file.to_string())))?,
+                None => read(&look.file).map_err(DrawError::Failed)?,
             };
             let faces = surface.faces.triangles.len() + surface.faces.quads.len();
             if faces == 0 {
@@ -64,7 +74,7 @@ impl SceneMeshes {
                 surface,
             })
         };
-        let meshes = asked.iter().zip(there).map(read);
+        let meshes = asked.iter().zip(there).map(shown);
         let meshes = meshes.collect::<Result<_, DrawError>>()?;
         Ok(Self { meshes })
     }

@@ -16,6 +16,7 @@ use crate::warning::Warnings;
 use crate::{Fault, Read, ReadError, ReadOptions, read_regular};
 use info::Info;
 pub use murmur::murmur;
+pub use shards::{Located, Shards};
 
 /// Short name of the format.
 const NAME: &str = "precomputed";

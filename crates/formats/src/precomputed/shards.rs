@@ -12,7 +12,7 @@ use crate::{Fault, regular};
 
 /// How objects are divided into shards, and shards into minishards.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq)]
-pub(super) struct Shards {
+pub struct Shards {
     preshift_bits: u32,
     hash: Hash,
     minishard_bits: u32,
@@ -39,6 +39,17 @@ enum Encoding {
     Gzip,
 }
 
+/// Where the bytes of an object are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Located {
+    /// The shard.
+    pub file: PathBuf,
+    /// The first of them.
+    pub start: u64,
+    /// How many they are.
+    pub size: u64,
+}
+
 /// An object of a minishard: its id, and where its bytes are in the file.
 type Entry = (u64, u64, u64);
 
@@ -47,7 +58,10 @@ const MOST_MINISHARD_BITS: u32 = 20;
 
 impl Shards {
     /// Refuses what no file can be.
-    pub(super) fn check(&self) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// More bits than files can have.
+    pub fn check(&self) -> Result<(), Fault> {
         if self.minishard_bits > MOST_MINISHARD_BITS
             || self.shard_bits > 40
             || self.preshift_bits > 63
@@ -82,21 +96,29 @@ impl Shards {
     ///
     /// # Errors
     /// A shard that cannot be read, or is broken.
-    pub(super) fn object(&self, folder: &Path, id: u64) -> Result<Option<Vec<u8>>, Fault> {
-        let (path, (_, minishard)) = (self.file(folder, id), self.place(id));
-        if !path.exists() {
-            return Ok(None);
-        }
-        let mut shard = self.open(&path)?;
-        let entries = shard.entries(minishard)?;
-        let Some(&(_, start, size)) = entries.iter().find(|(own, ..)| *own == id) else {
+    pub fn object(&self, folder: &Path, id: u64) -> Result<Option<Vec<u8>>, Fault> {
+        let Some(Located { file, start, size }) = self.locate(folder, id)? else {
             return Ok(None);
         };
-        let bytes = shard.bytes(start, size)?;
+        let bytes = self.open(&file)?.bytes(start, size)?;
         match self.data_encoding {
             Encoding::Raw => Ok(Some(bytes)),
             Encoding::Gzip => unpacked(bytes).map(Some),
         }
+    }
+
+    /// Where an object is, as it is stored; none if no shard has it.
+    ///
+    /// # Errors
+    /// As [`object`](Self::object).
+    pub fn locate(&self, folder: &Path, id: u64) -> Result<Option<Located>, Fault> {
+        let (file, (_, minishard)) = (self.file(folder, id), self.place(id));
+        if !file.exists() {
+            return Ok(None);
+        }
+        let entries = self.open(&file)?.entries(minishard)?;
+        let found = entries.into_iter().find(|(own, ..)| *own == id);
+        Ok(found.map(|(_, start, size)| Located { file, start, size }))
     }
 
     /// The ids of all objects of a file.

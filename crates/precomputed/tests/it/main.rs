@@ -2,6 +2,7 @@
 
 mod circuits;
 mod folders;
+mod reading;
 mod serve;
 
 use std::collections::BTreeMap;
