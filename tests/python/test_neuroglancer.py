@@ -130,10 +130,9 @@ def test_skeletons_are_the_tracings(cell_file: Path, tmp_path: Path) -> None:
     volume = volume_of(written(tmp_path / "out", cell_file))
     skeleton = volume.skeleton.get(segment)
     cell = nt.read(cell_file)
-    places, radii = np.asarray(cell.points)[:, :3], np.asarray(cell.points)[:, 3]
     # The soma's point is the first.
-    assert np.allclose(skeleton.vertices[1:], places * NM, atol=0.2)
-    assert np.allclose(skeleton.radii[1:], radii * NM, rtol=1e-6)
+    assert np.allclose(skeleton.vertices[1:], np.asarray(cell.points) * NM, atol=0.2)
+    assert np.allclose(skeleton.radii[1:], np.asarray(cell.radii) * NM, rtol=1e-6)
     assert list(skeleton.edges[0]) == [0, 1]
     assert (skeleton.edges[:, 0] < skeleton.edges[:, 1]).all()
     names = [attribute["id"] for attribute in skeleton.extra_attributes]
