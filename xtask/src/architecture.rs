@@ -89,6 +89,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "neurotess-raster",
             "neurotess-options",
             // Behind features.
+            "neurotess-precomputed",
             "neurotess-render",
             "neurotess-web",
         ],

@@ -6,6 +6,7 @@ use clap::Args;
 use neurotess::batch::standard::standard_input;
 use neurotess::batch::{Input, InputError, Inputs};
 use neurotess::mesh::{self, Format, Report};
+use neurotess::precomputed;
 use serde::Serialize;
 
 use crate::io::batch::each;
@@ -65,13 +66,13 @@ fn judge(input: &Input, args: &CheckArgs) -> Result<Verdict, Failure> {
             let nothing = |head: &[u8]| head.len() > 1 << 15 && head.iter().all(|&byte| byte == 0);
             mesh::read_bytes(&standard_input(nothing).map_err(InputError::from)?, format)
         }
-        (false, None) if let Some(read) = precomputed(&input.path) => {
-            return read.map(|surface| verdict(file, surface, args));
-        }
         (false, Some(format)) => mesh::read_as(&input.path, format),
         (false, None) => mesh::read(&input.path),
     };
-    let mut surface = read.map_err(|e| Failure(e.in_file(&file)))?;
+    let mut surface = match precomputed::read_mesh(&input.path) {
+        Some(read) => read.map_err(|e| Failure(format!("{file}: {e}")))?,
+        None => read.map_err(|e| Failure(e.in_file(&file)))?,
+    };
     if args.merge {
         mesh::merge_identical(&mut surface);
     }
