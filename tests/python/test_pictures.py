@@ -527,3 +527,33 @@ def test_films_have_a_length_and_are_saved(cell: nt.Morphology, tmp_path: Path) 
     film.save(tmp_path / "film.gif", fps=10)
     with pil.open(tmp_path / "film.gif") as saved:
         assert (saved.n_frames, saved.size, saved.info["duration"]) == (3, SMALL["size"], 100)
+
+
+def test_points_have_colors_of_their_own(cell: nt.Morphology) -> None:
+    look = {"size": (120, 80), "samples": 1, "light": "flat", "ao": 0, "background": "black"}
+    colors = np.zeros((len(cell), 3))
+    colors[cell.types == 2] = (1.0, 0.5, 0.0)
+    colors[cell.types != 2] = (0.0, 0.5, 1.0)
+    drawn = np.asarray(nt.render(cell, values=colors, **look))[..., :3].reshape(-1, 3)
+    seen = {tuple(color) for color in np.unique(drawn, axis=0).tolist()}
+    assert {(255, 128, 0), (0, 128, 255)} <= seen
+    whole = nt.render(cell, values=np.round(colors * 255).astype(np.uint8), **look)
+    assert (np.asarray(whole)[..., :3].reshape(-1, 3) == drawn).all()
+    by_section = np.tile([[0.25, 0.75, 0.5]], (len(cell.sections), 1))
+    one = np.asarray(nt.render([cell, cell], values=[{"section": by_section}, None], **look))
+    assert (64, 191, 128) in {tuple(color) for color in np.unique(one[..., :3].reshape(-1, 3), axis=0).tolist()}
+    for wrong, told in (({"colormap": "magma"}, "leave out colormap="), ({"title": "t"}, "leave out title=")):
+        with pytest.raises(ValueError, match=told):
+            nt.render(cell, values=colors, **look, **wrong)
+    with pytest.raises(ValueError, match="from 0 to 1, or whole numbers to 255"):
+        nt.render(cell, values=2 * colors, **look)
+
+
+def test_kinds_have_the_colors_of_their_map(cell: nt.Morphology) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    kinds = np.where(cell.types == 2, 3, 1)
+    look = {"size": (120, 80), "samples": 1, "light": "flat", "ao": 0, "legend": False, "background": "black"}
+    drawn = np.asarray(nt.render(cell, values=kinds, colormap="tab10", **look))[..., :3].reshape(-1, 3)
+    seen = {tuple(color) for color in np.unique(drawn, axis=0).tolist()}
+    tab = [tuple(round(255 * part) for part in color) for color in matplotlib.colormaps["tab10"].colors]
+    assert {tab[1], tab[3]} <= seen

@@ -104,7 +104,8 @@ def render(
     Colors: `color_by`; `values` of your own, with a `title` and a `unit` for the legend: an array with a number for each
     of ``cell.points``, of the rows of ``cell.to_table()`` (with the soma's) or of ``cell.sections``; as in
     ``{"section": numbers}`` where the length tells not which; NaN is gray; of several cells a list of them. Of a mesh they
-    are a number for each vertex, or the name of an attribute. With `times`
+    are a number for each vertex, or the name of an attribute. Of cells they may be colors, (n, 3), instead; whole numbers with a
+    map of kinds, like ``"tab10"``, have its colors as they are. With `times`
     (ms) they are over time: an array with a row, or a column, for each time, or ``{"segment": arrays}``, an array for each
     of ``cell.sections`` (the soma's before them, or not) with the segments' numbers, as a simulator records them; `time`
     (ms) is the one that is shown, of `film` those. Of circuits `color_by_attribute`, or `report` (a name of `Circuit.reports` or a file) at a

@@ -9,6 +9,7 @@ from ._cells import cell_of
 from ._colormaps import is_own, scale_of
 from ._colors import text_of
 from ._errors import OptionError, RenderError, missing_file
+from ._own_colors import colors_of_points, kinds_of
 from ._sources import is_alone
 from ._surfaces import joint_range, looks_of, values_of_meshes, without_surfaces, words_of
 from ._values import values_of
@@ -97,10 +98,12 @@ def drawing_of(
         cells, circuit = _cells(what, options), None
     looks = looks_of(options.pop("meshes", None))
     of_meshes = values_of_meshes(looks, options)
+    own = colors_of_points(is_alone(what), options) if cells else None
     still, series = values_of(cells, is_alone(what), options)
+    own = own or kinds_of(still, options)
     if of_meshes is not None and options.get("range") is None:
         options["range"] = joint_range(still, of_meshes)
-    scale = _own_scale(options)
+    scale = own or _own_scale(options)
     report = options.get("report")
     named = isinstance(what, DrawnCircuit) and report is not None and os.fspath(report) in what.reports
     for name, is_file in (("points", True), ("like", True), ("report", circuit is not None and not named)):
