@@ -77,7 +77,7 @@ pub(crate) enum Command {
     Html(Box<HtmlArgs>),
     /// Open the window: look, pick, tune somata, save
     #[cfg(feature = "view")]
-    View(ViewArgs),
+    View(Box<ViewArgs>),
     /// Write cells as neuroglancer opens them: meshes, skeletons, properties, a link
     Neuroglancer(Box<NeuroglancerArgs>),
     /// Judge meshes: closed, manifold, oriented, self-intersections, volume

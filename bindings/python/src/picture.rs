@@ -103,6 +103,9 @@ pub(crate) struct Drawing {
 /// perspective.
 type View = ([f64; 3], [f64; 3], [f64; 3], f64, bool);
 
+/// The title of a scale, the numbers at its ends, and its colors.
+type Scale = (String, [f32; 2], Vec<Rgb>);
+
 /// A circuit, and population and row of the nodes that are drawn, if not all are.
 type GivenCircuit = (PathBuf, Option<Vec<(u32, u32)>>);
 
@@ -318,7 +321,7 @@ impl Drawing {
     }
 
     /// The title of a picture's scale, the numbers at its ends, and its colors; none if colors tell kinds.
-    fn scale(&self, picture: usize) -> PyResult<Option<(String, [f32; 2], Vec<Rgb>)>> {
+    fn scale(&self, picture: usize) -> PyResult<Option<Scale>> {
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let legend = shared.as_ref().ok_or_else(closed)?.legend(picture);
         let told = legend.scale();

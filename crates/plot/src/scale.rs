@@ -59,7 +59,8 @@ impl Scale {
     fn powers(&self, most: usize) -> Vec<(f64, String)> {
         let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
         let all = |times: &[f64], every: usize| -> Vec<f64> {
-            let powers = (first..=last).filter(|power| power.unsigned_abs() as usize % every == 0);
+            let powers = (first..=last)
+                .filter(|power| (power.unsigned_abs() as usize).is_multiple_of(every));
             let numbers = powers.flat_map(|power| times.iter().map(move |t| t * 10f64.powi(power)));
             numbers
                 .filter(|&n| (-1e-9..=1.0 + 1e-9).contains(&self.share(n)))
