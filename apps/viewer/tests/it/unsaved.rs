@@ -76,6 +76,38 @@ fn closing_asks_while_there_are_unsaved_edits() {
 }
 
 #[neurotess_testing::test(needs(gpu))]
+fn a_question_has_the_keyboard_and_nothing_behind_it_can_be_reached() {
+    let mut window = window();
+    window.step();
+    run(&mut window, Edit::SetGrid(true));
+    let asks = |window: &mut Window| matches!(state(window).layout.dialog, Dialog::Unsaved(_));
+    for tabs in 0..3 {
+        presses_ctrl_q(&mut window);
+        window.run_steps(8);
+        assert!(asks(&mut window));
+        // Round the answers: three of them.
+        for _ in 0..3 * tabs {
+            window.key_press(Key::Tab);
+            window.run_steps(4);
+        }
+        window.key_press(Key::Enter);
+        window.run_steps(4);
+        assert!(!asks(&mut window), "{tabs}");
+        assert!(!asked(&window).contains(&ViewportCommand::Close));
+        assert_eq!(
+            state(&mut window).document.neurons.len(),
+            0,
+            "no menu was opened"
+        );
+    }
+    presses_ctrl_q(&mut window);
+    window.run_steps(8);
+    window.key_press(Key::Escape);
+    window.run_steps(4);
+    assert!(!asks(&mut window));
+}
+
+#[neurotess_testing::test(needs(gpu))]
 fn a_saved_session_closes_at_once() {
     let mut window = window();
     window.step();

@@ -4,10 +4,10 @@ use std::time::SystemTime;
 
 use eframe::egui::{Context, RichText};
 
+use super::{question, safe};
 use crate::model::command::{Command, FilePurpose};
 use crate::model::state::{Dialog, State};
 use crate::ui::panels::cells::count;
-use crate::ui::panels::window;
 
 /// Asks whether a command may end what is not saved.
 pub(crate) fn unsaved(state: &mut State, command: Box<Command>, ctx: &Context) -> Dialog {
@@ -17,7 +17,7 @@ pub(crate) fn unsaved(state: &mut State, command: Box<Command>, ctx: &Context) -
         false => "Open another session?",
     };
     let mut stays = None;
-    window(title, ctx).show(ctx, |ui| {
+    question(title, ctx, |ui| {
         if state.writing {
             ui.label("Files are still being written. Quitting stops that.");
         }
@@ -54,7 +54,7 @@ pub(crate) fn unsaved(state: &mut State, command: Box<Command>, ctx: &Context) -
                 state.requests.push(command);
                 stays = Some(Dialog::Nothing);
             }
-            if ui.button("Cancel").clicked() {
+            if safe(ui, "Cancel") {
                 stays = Some(Dialog::Nothing);
             }
         });
@@ -65,7 +65,7 @@ pub(crate) fn unsaved(state: &mut State, command: Box<Command>, ctx: &Context) -
 /// Offers what an earlier window had not saved.
 pub(crate) fn recover(state: &mut State, written: SystemTime, ctx: &Context) -> Dialog {
     let mut answer = None;
-    window("Edits that were not saved", ctx).show(ctx, |ui| {
+    question("Edits that were not saved", ctx, |ui| {
         let minutes = written.elapsed().map_or(0, |ago| ago.as_secs() / 60) as usize;
         let ago = match minutes {
             0..120 => count(minutes, "minute"),
@@ -78,7 +78,7 @@ pub(crate) fn recover(state: &mut State, written: SystemTime, ctx: &Context) -> 
         ui.label(RichText::new("Its session was kept.").weak());
         ui.add_space(6.0);
         ui.horizontal(|ui| {
-            if ui.button("Open it").clicked() {
+            if safe(ui, "Open it") {
                 answer = Some(true);
             }
             if ui.button("Discard it").clicked() {

@@ -4,7 +4,7 @@ mod leaving;
 
 use std::borrow::Cow;
 
-use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Align2, Context, Id, Key, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::model::command::{Command, FilePurpose, Listed};
 use crate::model::state::{Dialog, State};
@@ -73,6 +73,24 @@ fn files(
     }
     *panel = Some(shown);
     Dialog::Files(purpose)
+}
+
+/// A question: until it is answered, nothing behind it can be reached, by mouse or by keyboard.
+fn question(title: &str, ctx: &Context, content: impl FnOnce(&mut Ui)) {
+    egui::Modal::new(Id::unique(title)).show(ctx, |ui| {
+        ui.heading(title);
+        ui.add_space(4.0);
+        content(ui);
+    });
+}
+
+/// The button of the answer that loses nothing: Enter gives it, unless Tab has gone to another.
+fn safe(ui: &mut Ui, text: &str) -> bool {
+    let button = ui.button(text);
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
 }
 
 /// What is shown after a file was not to be replaced: the file dialog that the question came from, if it was one.
@@ -211,7 +229,7 @@ fn palette(state: &mut State, mut text: String, mut chosen: usize, ctx: &Context
         .fixed_size([440.0, 330.0])
         .show(ctx, |ui| {
             let line = TextEdit::singleline(&mut text)
-                .id(egui::Id::unique("palette line"))
+                .id(Id::unique("palette line"))
                 .hint_text("Find a command")
                 .desired_width(f32::INFINITY);
             let line = ui.add(line);
@@ -290,7 +308,7 @@ fn replace(
     ctx: &Context,
 ) -> Dialog {
     let mut answer = None;
-    window("Replace?", ctx).show(ctx, |ui| {
+    question("Replace?", ctx, |ui| {
         let what = if path.is_dir() {
             "There is a folder of this name; files in it may be replaced"
         } else {
@@ -303,7 +321,7 @@ fn replace(
             if ui.button("Replace").clicked() {
                 answer = Some(true);
             }
-            if ui.button("Cancel").clicked() {
+            if safe(ui, "Cancel") {
                 answer = Some(false);
             }
         });
