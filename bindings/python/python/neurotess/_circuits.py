@@ -47,6 +47,7 @@ class Circuit(DrawnCircuit):
             _neurotess.allow_large()
         self._circuit = _neurotess.Circuit(path)
         self._path = os.fspath(path)
+        self._allow_large = allow_large
         self._tables: dict[str, pd.DataFrame] = {}
         for message in self._circuit.warnings:
             warnings.warn(ReadWarning(message), stacklevel=2)
