@@ -1,6 +1,14 @@
 //! `neurotess neuroglancer`: what the command says, and what becomes of folders that are there. What is in them is tested in
 //! `crates/precomputed`, and by other people's programs in `tests/python/test_neuroglancer.py`.
 
+#[cfg(unix)]
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    process::{Command, Stdio},
+    time::{Duration, Instant},
+};
+
 use crate::work::{BROKEN, SMALL, Work};
 
 #[neurotess_testing::test]
@@ -94,26 +102,79 @@ fn a_killed_run_is_finished() {
     for n in 0..40 {
         work.file(&format!("in/{n}.swc"), SMALL);
     }
+    work.run("neuroglancer in -o whole").exits(0);
     let mut child = work
         .command("neuroglancer in -o out --threads 1")
         .spawn()
         .expect("it starts");
     while !work.path("out/skeletons/4").is_file() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
+        std::thread::sleep(Duration::from_millis(1));
     }
     child.kill().expect("killed");
     child.wait().expect("it ended");
     work.run("neuroglancer in -o out --resume").exits(0);
-    work.run("neuroglancer in -o whole").exits(0);
-    let bytes = |folder: &str, name: &str| {
-        let file = work.path(folder).join(name);
-        std::fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
-    };
-    for folder in ["mesh", "skeletons", "properties"] {
-        let names = work.names(&format!("whole/{folder}"));
-        for name in names {
-            let name = format!("{folder}/{name}");
-            assert!(bytes("out", &name) == bytes("whole", &name), "{name}");
+    assert_same(&work, "out");
+}
+
+/// The same at ten moments at random, of the time that a whole run takes; every second run is killed twice.
+#[cfg(unix)]
+#[neurotess_testing::test(needs(neurotess_testing::full))]
+fn runs_killed_at_any_moment_are_finished() {
+    // Four shards are of 1,100 cells.
+    for (cells, more) in [(300, ""), (1100, "--sharded")] {
+        let work = Work::new();
+        let circuit = format!("synth circuit -o c --neurons {cells} --points 60 --synapses 2");
+        work.run(&format!("{circuit} --morphologies 3")).exits(0);
+        let to = |out: &str| {
+            format!("neuroglancer c -o {out} --max-error 1 --lods 1 --synapses all {more}")
+        };
+        let begun = Instant::now();
+        work.run(&to("whole")).exits(0);
+        let takes = begun.elapsed();
+        let mut seed = 1;
+        for moment in 0..10 {
+            let out = format!("out{moment}");
+            let resumed = format!("{} --resume", to(&out));
+            kill_after(work.command(&to(&out)), takes.mul_f64(random(&mut seed)));
+            if moment % 2 == 1 {
+                kill_after(work.command(&resumed), takes.mul_f64(random(&mut seed)));
+            }
+            work.run(&resumed).exits(0);
+            assert_same(&work, &out);
         }
+    }
+}
+
+#[cfg(unix)]
+fn kill_after(mut command: Command, time: Duration) {
+    let silent = command.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = silent.spawn().expect("it starts");
+    std::thread::sleep(time);
+    child.kill().expect("killed, or at its end");
+    child.wait().expect("it ended");
+}
+
+/// A number from 0 to 1, by Knuth's generator.
+#[cfg(unix)]
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed
+        .wrapping_mul(6_364_136_223_846_793_005)
+        .wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 32) as f64 / f64::from(u32::MAX)
+}
+
+/// Asserts that a folder has the files of `whole`, to the byte.
+#[cfg(unix)]
+fn assert_same(work: &Work, out: &str) {
+    let below = |folder: &str| -> BTreeMap<PathBuf, Vec<u8>> {
+        let root = work.path(folder);
+        let files = work.files(folder).into_iter();
+        let below = |path: PathBuf| path.strip_prefix(&root).expect("below").to_path_buf();
+        files.map(|(path, bytes)| (below(path), bytes)).collect()
+    };
+    let (whole, out) = (below("whole"), below(out));
+    assert!(whole.keys().eq(out.keys()), "{:?}", out.keys());
+    for (name, bytes) in &whole {
+        assert!(out[name] == *bytes, "{}", name.display());
     }
 }
