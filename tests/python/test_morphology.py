@@ -302,7 +302,9 @@ def test_section_tables_have_what_sections_tell(cell: nt.Morphology) -> None:
     table = cell.section_table()
     assert len(table) == len(cell.sections)
     for row, section in zip(table, cell.sections, strict=True):
-        assert (row["section"], row["type"], row["order"]) == (section.id, section.type, section.order)
+        assert (row["section_index"], row["type"], row["order"]) == (section.id, section.type, section.order)
+        assert row["section"] == section.id + 1
+        assert row["parent"] == (0 if section.parent is None else section.parent.id + 1)
         told = (section.length, section.area, section.volume, section.mean_diameter)
         assert [row[name] for name in ("length", "area", "volume", "mean_diameter")] == pytest.approx(told)
     # Of a cylinder: 10 µm long and 2 µm thick.
@@ -316,6 +318,9 @@ def test_section_tables_have_what_sections_tell(cell: nt.Morphology) -> None:
         d_lambda = 10 / constant * share
         expected = int((1 / share + 0.9) / 2) * 2 + 1
         assert rod.section_table(d_lambda=d_lambda)["nseg"].tolist() == [expected]
+    for name, value in (("Ra", -1.0), ("d_lambda", 0.0), ("cm", float("nan")), ("frequency", float("inf"))):
+        with pytest.raises(ValueError, match=f"{name}={value} is not a number above 0"):
+            rod.section_table(**{name: value})
 
 
 def test_tables_are_cells_and_lists_are_told(cell: nt.Morphology) -> None:

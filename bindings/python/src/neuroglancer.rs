@@ -47,7 +47,8 @@ pub(crate) fn neuroglancer<'py>(
             "{} was written before: resume=True finishes it, overwrite=True writes it anew",
             folder.display()
         )),
-        ExportError::Levels | ExportError::Empty | ExportError::Ids(_) | ExportError::NoPlaces(_) => {
+        ExportError::Foreign(_) => PyFileExistsError::new_err(error.to_string()),
+        ExportError::NoAttribute { .. } | ExportError::Within(_) | ExportError::Unreadable(_) | ExportError::Levels | ExportError::Empty | ExportError::Ids(_) | ExportError::NoPlaces(_) => {
             PyValueError::new_err(error.to_string())
         }
         other => errors::bug(other),
@@ -134,6 +135,7 @@ fn told(report: &ExportReport) -> Value {
         "bytes": report.bytes,
         "synapses": report.synapses,
         "link": report.link,
+        "warnings": report.warnings,
         "failed": not_found.chain(failures).collect::<Vec<_>>(),
     })
 }

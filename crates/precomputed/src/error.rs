@@ -33,9 +33,26 @@ pub enum ExportError {
     /// The folder has been written.
     #[error("{} was written before: resume it, or let it be replaced", .0.display())]
     Exists(PathBuf),
+    /// The folder has files, and none of them says that it was written here.
+    #[error("{} has other files: give a new folder", .0.display())]
+    Foreign(PathBuf),
+    /// An input lies in the folder that is written.
+    #[error("{} lies in the folder that is written: give another folder", .0.display())]
+    Within(PathBuf),
+    /// No tracing can be read; why the first cannot.
+    #[error("{0}; no other input can be read either, so nothing was written")]
+    Unreadable(InputError),
     /// A file that all cells share was not written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// No node has the attribute that is to color cells.
+    #[error("no node has the attribute {name}: there are {}", there.join(", "))]
+    NoAttribute {
+        /// The attribute.
+        name: String,
+        /// Attributes that nodes have.
+        there: Vec<String>,
+    },
     /// Synapses without places.
     #[error("{0} has no places of synapses: leave it out")]
     NoPlaces(String),

@@ -1,6 +1,10 @@
 //! What is told while a folder is written, and what became of it.
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 use neurotess_batch::NotFound;
+use neurotess_formats::Warning;
 
 use crate::error::Failure;
 
@@ -16,6 +20,13 @@ pub enum Event<'e> {
     },
     /// A cell was written; told by any thread.
     Written(&'e CellDone),
+    /// A tracing was read with warnings, told once.
+    Warned {
+        /// The tracing.
+        file: &'e Path,
+        /// What is odd about it.
+        warnings: &'e [Warning],
+    },
     /// A tracing was not, the first time that it is needed.
     Failed(&'e Failure),
 }
@@ -49,6 +60,8 @@ pub struct ExportReport {
     pub synapses: usize,
     /// Tracings that were not written.
     pub failures: Vec<Failure>,
+    /// How many of the tracings that were meshed have a warning of each code.
+    pub warnings: BTreeMap<&'static str, usize>,
     /// Inputs without any file.
     pub not_found: Vec<NotFound>,
     /// Opens the cells in the public client; empty of a part that does not write what all cells share.

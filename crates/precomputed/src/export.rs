@@ -168,7 +168,8 @@ impl Export {
     /// and the others go on.
     ///
     /// # Errors
-    /// No folder was given, options are wrong, the folder is of other cells, or what all cells share cannot be written.
+    /// No folder was given, options are wrong, no tracing can be read, the folder has other files or those of other cells, or
+    /// what all cells share cannot be written.
     pub fn run(self, tell: impl Fn(Event<'_>) + Sync) -> Result<ExportReport, ExportError> {
         let out = self.out.as_deref().ok_or(ExportError::NoFolder)?;
         let LevelOptions { max_error, count } = self.levels;
@@ -179,6 +180,8 @@ impl Export {
             return Err(ExportError::Empty);
         }
         let ids = self.source.ids()?;
+        self.check_color()?;
+        self.source.check(out)?;
         let sharding = self.sharded.then(|| Sharding::for_count(ids.len()));
         let folder = Folder::new(out, sharding);
         let text = plan::text(&self.source, &ids, self.levels, sharding);
@@ -202,6 +205,25 @@ impl Export {
             report.not_found.clone_from(&inputs.not_found);
         }
         Ok(report)
+    }
+
+    /// Refuses an attribute that no node has.
+    fn check_color(&self) -> Result<(), ExportError> {
+        let Source::Circuit(circuit, _) = &self.source else {
+            return Ok(());
+        };
+        let all = circuit
+            .populations
+            .iter()
+            .flat_map(|of| of.attributes.keys());
+        let mut there: Vec<String> = all.cloned().chain(["population".to_owned()]).collect();
+        if there.contains(&self.color_by) {
+            return Ok(());
+        }
+        there.sort_unstable();
+        there.dedup();
+        let name = self.color_by.clone();
+        Err(ExportError::NoAttribute { name, there })
     }
 
     /// Writes what all cells share.

@@ -52,24 +52,20 @@ impl Folder {
     pub(crate) fn begin(&self, plan: &str, before: Before) -> Result<(), ExportError> {
         let path = self.path(PLAN);
         // Looked for first: where another process has begun, its plan is there before all else.
-        let names = [MESH, SKELETONS, "properties", "info", "view.json"];
-        let is_there = names.iter().any(|name| self.path(name).exists());
+        let has_files = self.has_files();
         let found = fs::read(&path).ok();
         let is_ours = found.is_some();
         let is_same = found.as_deref() == Some(plan.as_bytes());
         match before {
             Before::Keep if is_same => return Ok(()),
             Before::Keep if is_ours => return Err(ExportError::Other(self.root.clone())),
-            Before::Replace => {
-                // The plan first, so that a run that is killed leaves nothing that looks right.
-                if is_ours {
-                    fs::remove_file(&path).map_err(|e| OutputError::broken(&path, e))?;
-                }
+            _ if has_files && !is_ours => return Err(ExportError::Foreign(self.root.clone())),
+            Before::Replace if is_ours => {
+                // First a plan of nothing, so that a run that is killed leaves a folder that is ours, and not right.
+                write_whole(&path, Existing::Replace, |to| to.write_all(b"{}\n"))?;
                 self.clear()?;
             }
-            _ if is_ours || is_there => {
-                return Err(ExportError::Exists(self.root.clone()));
-            }
+            _ if is_ours => return Err(ExportError::Exists(self.root.clone())),
             _ => {}
         }
         for _ in 0..LOOKS {
@@ -80,6 +76,12 @@ impl Folder {
             }
         }
         Err(OutputError::Taken { path }.into())
+    }
+
+    /// Whether something is there that nobody hides.
+    fn has_files(&self) -> bool {
+        let mut entries = fs::read_dir(&self.root).into_iter().flatten().flatten();
+        entries.any(|entry| !entry.file_name().as_encoded_bytes().starts_with(b"."))
     }
 
     /// Removes files of cells: those whose names are ids or shards.

@@ -69,7 +69,7 @@ impl Run<'_> {
             to_do: cells(&to_do),
             kept: report.kept,
         });
-        let templates = Templates::new(self.source, self.levels, self.stopped);
+        let templates = Templates::new(self);
         let done = Mutex::new(Done::default());
         let order: Vec<usize> = (0..to_do.len()).collect();
         let results = workers::run(&to_do, &order, self.threads, |unit| {
@@ -94,6 +94,7 @@ impl Run<'_> {
         report.written = made.written;
         report.triangles = made.triangles;
         report.bytes = made.bytes;
+        report.warnings = templates.warnings();
         report.stopped = self.is_stopped();
         Ok(())
     }

@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
-use neurotess_batch::Inputs;
+use neurotess_batch::{Inputs, read};
 use neurotess_circuit::{Circuit, Instance};
-use neurotess_formats as formats;
+use neurotess_formats::{self as formats, ReadOptions};
 use std::sync::Arc;
+
+use crate::error::ExportError;
 
 /// Ids of the cells of a circuit's second population begin behind those of the first, and so on.
 pub(crate) const OF_POPULATION: u64 = 1_000_000_000_000;
@@ -130,6 +132,34 @@ impl Source {
                 id: ids[pair[0]],
             }),
         }
+    }
+
+    /// Refuses tracings in the folder that is written, and those of which none can be read: then nothing is to become of what
+    /// is in the folder. One is read, if it is sound.
+    pub(crate) fn check(&self, out: &Path) -> Result<(), ExportError> {
+        if let (Self::Files(inputs), Ok(out)) = (self, out.canonicalize()) {
+            let is_within = |path: &Path| path.canonicalize().is_ok_and(|p| p.starts_with(&out));
+            let mut files = inputs
+                .files
+                .iter()
+                .map(|input| formats::member(&input.path).0);
+            if let Some(path) = files.find(|path| is_within(path)) {
+                return Err(ExportError::Within(path.to_path_buf()));
+            }
+        }
+        let mut first = None;
+        for (template, _) in self
+            .uses()
+            .iter()
+            .enumerate()
+            .filter(|(_, uses)| **uses > 0)
+        {
+            match read(self.file(template), None, &ReadOptions::default()) {
+                Ok(_) => return Ok(()),
+                Err(error) => first = first.or(Some(error)),
+            }
+        }
+        first.map_or(Ok(()), |error| Err(ExportError::Unreadable(error)))
     }
 
     /// How many cells have each tracing.

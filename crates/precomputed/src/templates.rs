@@ -1,14 +1,17 @@
 //! Tracings that cells share: meshed when one of them needs it, and kept within a bound of memory.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use neurotess_batch::read;
-use neurotess_formats::ReadOptions;
+use neurotess_formats::{ReadOptions, Warning};
 
 use crate::error::Fault;
+use crate::event::Event;
 use crate::levels::{LevelOptions, TemplateMesh};
+use crate::run::Run;
 use crate::source::Source;
 
 /// Bytes of tracings that are kept; with those in use there may be more. A hundred templates of a circuit, of 20,000
@@ -22,8 +25,18 @@ pub(crate) struct Templates<'s> {
     source: &'s Source,
     options: LevelOptions,
     stopped: &'s AtomicBool,
+    tell: &'s (dyn Fn(Event<'_>) + Sync),
     uses: Vec<u32>,
+    warnings: Mutex<TracingWarnings>,
     kept: Mutex<Kept>,
+}
+
+#[derive(Default)]
+struct TracingWarnings {
+    /// Tracings of which it is told.
+    told: BTreeSet<usize>,
+    /// How many tracings have a warning of each code.
+    counts: BTreeMap<&'static str, usize>,
 }
 
 #[derive(Default)]
@@ -41,12 +54,14 @@ struct Slot {
 }
 
 impl<'s> Templates<'s> {
-    pub(crate) fn new(source: &'s Source, options: LevelOptions, stopped: &'s AtomicBool) -> Self {
+    pub(crate) fn new(run: &Run<'s>) -> Self {
         Self {
-            source,
-            options,
-            stopped,
-            uses: source.uses(),
+            source: run.source,
+            options: run.levels,
+            stopped: run.stopped,
+            tell: run.tell,
+            uses: run.source.uses(),
+            warnings: Mutex::default(),
             kept: Mutex::default(),
         }
     }
@@ -67,10 +82,30 @@ impl<'s> Templates<'s> {
         let make = || -> Result<TemplateMesh, Fault> {
             let file = self.source.file(template);
             let tracing = read(file, None, &ReadOptions::default())?;
+            self.warn(template, file, &tracing.warnings);
             let morphology = Arc::new(tracing.morphology);
             Ok(TemplateMesh::new(morphology, self.options, self.stopped)?)
         };
         make().map_err(Arc::new)
+    }
+
+    /// Tells the warnings of a tracing, once.
+    fn warn(&self, template: usize, file: &Path, warnings: &[Warning]) {
+        let mut all = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        if warnings.is_empty() || !all.told.insert(template) {
+            return;
+        }
+        for warning in warnings {
+            *all.counts.entry(warning.code).or_default() += 1;
+        }
+        drop(all);
+        (self.tell)(Event::Warned { file, warnings });
+    }
+
+    /// How many tracings have a warning of each code.
+    pub(crate) fn warnings(self) -> BTreeMap<&'static str, usize> {
+        let all = self.warnings.into_inner();
+        all.unwrap_or_else(PoisonError::into_inner).counts
     }
 
     fn kept(&self) -> std::sync::MutexGuard<'_, Kept> {

@@ -1,5 +1,6 @@
 //! `neurotess neuroglancer`: cells as precomputed data, which neuroglancer opens.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use neurotess::precomputed::{
 use neurotess::recipe::Spelling;
 use serde::Serialize;
 
+use crate::io::morphologies::ReaderWarning;
 use crate::io::{circuits, inputs};
 use crate::options::numbers::positive;
 use crate::report::{Failed, Failure, Progress, Reporter, Usage, count, usage};
@@ -99,6 +101,7 @@ struct Document {
     bytes: u64,
     synapses: usize,
     link: String,
+    warnings: BTreeMap<&'static str, usize>,
     failed: Vec<Failed>,
 }
 
@@ -172,6 +175,7 @@ fn write(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<String>
         bytes: report.bytes,
         synapses: report.synapses,
         link: report.link.clone(),
+        warnings: report.warnings.clone(),
         failed: failed.collect(),
     })?;
     Ok(report.link)
@@ -253,6 +257,13 @@ fn follow(export: Export, out: &str, reporter: &Reporter) -> anyhow::Result<Expo
                 ));
             }
         }
+        Event::Warned { file, warnings } if reporter.verbose() => {
+            let file = file.display().to_string();
+            for warning in warnings {
+                let warning = ReaderWarning::from(warning.clone());
+                reporter.warning(&warning.in_file(&file));
+            }
+        }
         Event::Failed(failure) => reporter.failure(&Failure(failure.told(Spelling::Flag))),
         _ => {}
     };
@@ -263,6 +274,7 @@ fn follow(export: Export, out: &str, reporter: &Reporter) -> anyhow::Result<Expo
         ExportError::Exists(_) => anyhow::anyhow!(
             "{out} was written before: --resume finishes it, --force writes it anew"
         ),
+        ExportError::NoAttribute { .. } => Usage(format!("--color-by: {error}")).into(),
         ExportError::Ids(error) => Usage(error.to_string()).into(),
         other => other.into(),
     });
@@ -284,6 +296,7 @@ fn tell(report: &ExportReport, out: &str, clock: Instant, reporter: &Reporter) {
         report.bytes as f64 / 1e6,
         clock.elapsed().as_secs_f64()
     ));
+    inputs::tell_warnings(&report.warnings, reporter);
     if !report.link.is_empty() {
         reporter.result(&report.link);
     }

@@ -1,5 +1,7 @@
 //! What is said of inputs.
 
+use std::collections::BTreeMap;
+
 use neurotess::batch::{InputError, Inputs};
 
 use crate::report::{Failure, Reporter, count};
@@ -15,6 +17,23 @@ pub(crate) fn tell(inputs: &Inputs, reporter: &Reporter) {
             count(inputs.others, "HDF5 file")
         ));
     }
+}
+
+/// Sums warnings up: how many cells have one of each code.
+pub(crate) fn tell_warnings(counts: &BTreeMap<&'static str, usize>, reporter: &Reporter) {
+    if counts.is_empty() {
+        return;
+    }
+    let causes: Vec<String> = counts
+        .iter()
+        .map(|(code, n)| format!("{code} {n}"))
+        .collect();
+    let hint = if reporter.verbose() {
+        ""
+    } else {
+        " (-v tells all)"
+    };
+    reporter.warning(&format!("cells concerned: {}{hint}", causes.join(", ")));
 }
 
 impl From<InputError> for Failure {

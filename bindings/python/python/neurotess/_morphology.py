@@ -283,8 +283,11 @@ class Morphology:
     def section_table(
         self, *, d_lambda: float = 0.1, frequency: float = 100.0, Ra: float = 35.4, cm: float = 1.0
     ) -> NDArray[np.void]:
-        """A row for each section, as `Section` tells them: ``section``, ``neuron_section``, ``type``, ``parent``, ``neurite``,
-        ``order``, ``length``, ``area``, ``volume``, ``mean_diameter``, ``path_length``, and ``nseg``.
+        """A row for each section, as `Section` tells them: ``section``, ``section_index``, ``neuron_section``, ``type``, ``parent``,
+        ``neurite``, ``order``, ``length``, ``area``, ``volume``, ``mean_diameter``, ``path_length``, and ``nseg``.
+
+        ``section`` and ``parent`` count from 1, as `Mesh.section` and `ids` do; the parent of sections that leave the soma is 0.
+        ``section_index`` is the index in `sections`.
 
         ``nseg`` is how many segments it takes so that none is longer than `d_lambda` of the length constant at a `frequency`
         (Hz), with an axial resistance `Ra` (Ω cm) and a capacitance `cm` (µF/cm²): the rule and the defaults of NEURON.
@@ -293,7 +296,7 @@ class Morphology:
         >>> import neurotess as nt
         >>> table = nt.synth("granule").section_table()
         >>> table.dtype.names[:3], bool((table["nseg"] % 2 == 1).all())
-        (('section', 'neuron_section', 'type'), True)
+        (('section', 'section_index', 'neuron_section'), True)
         """
         from ._section_table import section_table
 

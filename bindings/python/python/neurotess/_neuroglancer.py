@@ -44,10 +44,10 @@ def neuroglancer(
     - `url`: where browsers will find the folder; else where ``neurotess neuroglancer -o FOLDER --serve`` serves it
     - of circuits: `color_by`, an attribute of nodes; `synapses`, names of populations of edges that become annotations
 
-    Gives ``link``, which opens the cells, ``written``, ``kept``, ``triangles``, ``bytes``, ``synapses`` and ``failed``, a list
-    of dictionaries with ``file`` and ``error``. Ctrl-C stops the work; no file is left half-written.
+    Gives ``link``, which opens the cells, ``written``, ``kept``, ``triangles``, ``bytes``, ``synapses``, ``warnings`` (how many tracings
+    have one of each code) and ``failed``, a list of dictionaries with ``file`` and ``error``. Ctrl-C stops the work; no file is left half-written.
 
-    Raises ``ValueError`` for options, ``FileExistsError`` for a folder that is there.
+    Raises ``ValueError`` for options and if no tracing can be read, ``FileExistsError`` for a folder that is there.
 
     >>> import neurotess as nt, tempfile
     >>> folder = tempfile.mkdtemp()

@@ -16,15 +16,21 @@ def section_table(
     """The columns of `Morphology.section_table`."""
     import numpy as np
 
+    given = {"d_lambda": d_lambda, "frequency": frequency, "Ra": Ra, "cm": cm}
+    for name, value in given.items():
+        if not (value > 0 and np.isfinite(value)):
+            raise ValueError(f"{name}={value} is not a number above 0")
+
     told = cell._section_columns()
     length, area = told["length"], told["area"]
     with np.errstate(divide="ignore", invalid="ignore"):
         diameter = np.where(length > 0, area / (np.pi * length), 0.0)
     columns = {
-        "section": np.arange(len(length)),
+        "section": np.arange(1, len(length) + 1),
+        "section_index": np.arange(len(length)),
         "neuron_section": told["neuron_section"],
         "type": told["type"],
-        "parent": told["parent"],
+        "parent": told["parent"] + 1,
         "neurite": told["neurite"],
         "order": told["order"],
         "length": length,

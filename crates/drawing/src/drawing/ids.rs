@@ -63,6 +63,10 @@ impl Drawing {
         let Some(camera) = self.camera(picture) else {
             return Err(DrawError::Failed("there is no such picture".into()));
         };
+        if self.placements.is_empty() {
+            let why = "no cell is drawn, and ids are those of cells: draw the cell of the mesh";
+            return Err(DrawError::Failed(why.into()));
+        }
         let size = self.options().picture.look.size.0;
         let drawn = self.points(&camera, size, stopped)?;
         let labels: Vec<Vec<(i32, i64)>> = self.cells.par_iter().map(labels).collect();

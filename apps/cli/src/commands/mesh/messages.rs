@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use neurotess::batch::{CellReport, Entry, OutputState};
 
+use crate::io::inputs::tell_warnings;
 use crate::report::{Reporter, count, place};
 
 /// Reports outputs that exist and are made again, and outputs that are kept although nothing is
@@ -76,7 +77,7 @@ pub(super) fn warn(cell: &CellReport, reporter: &Reporter) {
 /// Prints the summary to standard error. `kept`: how many of the entries were not to be done.
 pub(super) fn summarize(entries: &[Entry<'_>], kept: usize, clock: Instant, reporter: &Reporter) {
     let mut done = 0;
-    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut causes: BTreeMap<&'static str, usize> = BTreeMap::new();
     let is_skipped = |entry: &&Entry<'_>| matches!(entry, Entry::Skipped { .. });
     let skipped = entries.iter().filter(is_skipped).count();
     for entry in entries {
@@ -88,17 +89,8 @@ pub(super) fn summarize(entries: &[Entry<'_>], kept: usize, clock: Instant, repo
         }
     }
     let to_do = entries.len() - kept;
-    if to_do > 1 && !causes.is_empty() {
-        let causes: Vec<String> = causes
-            .iter()
-            .map(|(code, n)| format!("{code} {n}"))
-            .collect();
-        let hint = if reporter.verbose() {
-            ""
-        } else {
-            " (-v tells all)"
-        };
-        reporter.warning(&format!("cells concerned: {}{hint}", causes.join(", ")));
+    if to_do > 1 {
+        tell_warnings(&causes, reporter);
     }
     if to_do != 1 || kept > 0 {
         reporter.note(&format!(

@@ -73,6 +73,50 @@ fn a_cell_that_fails_is_told_of_and_the_others_are_written() {
     assert!(run.stderr().contains("b.swc:2:"), "{}", run.stderr());
 }
 
+/// Nothing becomes of what is there when there is nothing to put in its place.
+#[neurotess_testing::test]
+fn folders_are_left_alone_without_a_readable_input() {
+    let work = Work::new();
+    work.file("in/1.swc", SMALL);
+    work.file("bad/b.swc", BROKEN);
+    work.run("neuroglancer in -o out").exits(0);
+    let before = work.names("out/mesh");
+    let told = work.run("neuroglancer bad -o out --force").exits(1);
+    assert!(told.stderr().contains("b.swc:2:"), "{}", told.stderr());
+    assert_eq!(work.names("out/mesh"), before);
+    work.run("neuroglancer in -o out --resume").exits(0);
+    work.run("neuroglancer bad -o new").exits(1);
+    assert!(!work.path("new").exists());
+    // Nor of a folder with other files, or with the inputs.
+    work.file("mine/mesh/7", "precious");
+    for option in ["", "--force", "--resume"] {
+        let run = work.run(&format!("neuroglancer in -o mine {option}"));
+        let told = run.exits(1).stderr();
+        assert!(told.contains("mine has other files"), "{told}");
+    }
+    assert_eq!(work.text("mine/mesh/7"), "precious");
+    let told = work.run("neuroglancer in -o in --force").exits(1).stderr();
+    assert!(
+        told.contains("lies in the folder that is written"),
+        "{told}"
+    );
+}
+
+#[neurotess_testing::test]
+fn warnings_are_counted_or_told() {
+    let work = Work::new();
+    work.file("1.swc", SMALL.replace("40 3 0.7 5", "40 3 -1 5"));
+    let run = work.run("neuroglancer 1.swc -o out --json").exits(0);
+    assert_eq!(run.json()["warnings"].as_object().map(|w| w.len()), Some(1));
+    assert!(
+        run.stderr().contains("cells concerned: "),
+        "{}",
+        run.stderr()
+    );
+    let told = work.run("neuroglancer 1.swc -o out --force -v").exits(0);
+    assert!(told.stderr().contains("1.swc:"), "{}", told.stderr());
+}
+
 #[neurotess_testing::test]
 fn a_circuit_is_sharded_and_has_its_synapses() {
     let work = Work::new();
@@ -92,6 +136,12 @@ fn a_circuit_is_sharded_and_has_its_synapses() {
         .exits(2)
         .stderr();
     assert!(wrong.contains("cortex__cortex__chemical"), "{wrong}");
+    let wrong = work.run("neuroglancer c -o no --color-by foo").exits(2);
+    let told = wrong.stderr();
+    assert!(
+        told.contains("no node has the attribute foo: there are"),
+        "{told}"
+    );
 }
 
 /// Killed in the middle, and finished: the same bytes.
