@@ -9,8 +9,6 @@ use neurotess_mesh::draco::DracoError;
 use neurotess_output::OutputError;
 use neurotess_recipe::{MeshError, Spelling};
 
-use crate::source::IdError;
-
 /// Why nothing was written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -62,6 +60,28 @@ pub enum ExportError {
     /// There are no threads to be had.
     #[error(transparent)]
     Threads(#[from] ThreadError),
+}
+
+/// Cells that cannot be told apart by ids.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IdError {
+    /// Two have one id.
+    #[error("{} and {} would both be segment {id}: give them ids of their own", cells[0], cells[1])]
+    Twice {
+        /// The cells.
+        cells: [String; 2],
+        /// The id.
+        id: u64,
+    },
+    /// Ids of populations would run into each other.
+    #[error("node {id} of {population}: ids of circuits must be below 10^12")]
+    TooLarge {
+        /// The node's id.
+        id: u64,
+        /// Its population.
+        population: String,
+    },
 }
 
 /// Why a tracing was not written; `FILE:LINE: what: what to do`.

@@ -39,7 +39,7 @@ mod table;
 mod templates;
 mod view;
 
-pub use error::{ExportError, Failure, Fault};
+pub use error::{ExportError, Failure, Fault, IdError};
 pub use event::{CellDone, Event, ExportReport};
 pub use export::{Export, LOCAL_URL};
 pub use grid::Grid;
@@ -50,5 +50,4 @@ pub use read_mesh::{MeshReadError, read_mesh};
 pub use serve::{ServeError, Server};
 pub use shards::{ShardPlace, Sharding};
 pub use skeleton::{skeleton, skeleton_info};
-pub use source::IdError;
 pub use view::{View, link_to};

@@ -69,7 +69,7 @@ impl Run<'_> {
             to_do: cells(&to_do),
             kept: report.kept,
         });
-        let templates = Templates::new(self);
+        let templates = Templates::new(self.source, self.levels, self.stopped, self.tell);
         let done = Mutex::new(Done::default());
         let order: Vec<usize> = (0..to_do.len()).collect();
         let results = workers::run(&to_do, &order, self.threads, |unit| {

@@ -1,7 +1,7 @@
 //! A folder served to browsers of this machine, as neuroglancer needs it: parts of files, for pages of any origin.
 //!
-//! Only `GET`, one closed or open range at a time, no listing of folders, and nothing but the loopback interface. What is
-//! asked for is a regular file below the folder, or not found.
+//! Only reading (`GET`, `HEAD`, and `OPTIONS` that browsers ask before), one range at a time, no listing of folders, and
+//! nothing but the loopback interface. What is asked for is a regular file below the folder, or not found.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -91,8 +91,16 @@ impl Server {
     }
 
     fn answer(&self, request: Request) -> io::Result<()> {
-        if *request.method() != Method::Get {
-            return request.respond(empty(405));
+        match request.method() {
+            // The server leaves the bytes out of answers to `HEAD` by itself.
+            Method::Get | Method::Head => {}
+            Method::Options => {
+                let mut response = empty(204);
+                response.add_header(header("Access-Control-Allow-Methods", "GET, HEAD"));
+                response.add_header(header("Access-Control-Allow-Headers", "Range"));
+                return request.respond(response);
+            }
+            _ => return request.respond(empty(405)),
         }
         let Some((mut file, bytes)) = self.open(request.url()) else {
             return request.respond(empty(404));
@@ -148,6 +156,10 @@ fn empty(status: u16) -> Response<io::Empty> {
 fn shared() -> Vec<Header> {
     vec![
         header("Access-Control-Allow-Origin", "*"),
+        header(
+            "Access-Control-Expose-Headers",
+            "Content-Range, Content-Length",
+        ),
         header("Accept-Ranges", "bytes"),
         header("Cache-Control", "no-cache"),
         header("Content-Type", "application/octet-stream"),
@@ -162,9 +174,14 @@ fn length(bytes: u64) -> Option<usize> {
     usize::try_from(bytes).ok()
 }
 
-/// First and last byte of a range, `bytes=FIRST-LAST` or `bytes=FIRST-`; none if the file has no such bytes.
+/// First and last byte of a range, `bytes=FIRST-LAST`, `bytes=FIRST-` or `bytes=-COUNT`, the last so many; none if the file
+/// has no such bytes.
 fn range(text: &str, bytes: u64) -> Option<(u64, u64)> {
     let (first, last) = text.trim().strip_prefix("bytes=")?.split_once('-')?;
+    if first.is_empty() {
+        let count: u64 = last.parse().ok()?;
+        return (count > 0 && bytes > 0).then(|| (bytes.saturating_sub(count), bytes - 1));
+    }
     let first: u64 = first.parse().ok()?;
     let last = match last {
         "" => bytes.checked_sub(1)?,
@@ -200,12 +217,14 @@ mod tests {
         assert_eq!(range("bytes=0-3", 10), Some((0, 3)));
         assert_eq!(range("bytes=4-", 10), Some((4, 9)));
         assert_eq!(range("bytes=8-99", 10), Some((8, 9)));
+        assert_eq!(range("bytes=-3", 10), Some((7, 9)));
+        assert_eq!(range("bytes=-30", 10), Some((0, 9)));
         for wrong in [
             "bytes=10-12",
             "bytes=3-2",
             "bytes=0-1,4-5",
             "lines=0-1",
-            "bytes=-3",
+            "bytes=-0",
         ] {
             assert_eq!(range(wrong, 10), None, "{wrong}");
         }

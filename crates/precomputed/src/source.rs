@@ -9,7 +9,7 @@ use neurotess_circuit::{Circuit, Instance};
 use neurotess_formats::{self as formats, ReadOptions};
 use std::sync::Arc;
 
-use crate::error::ExportError;
+use crate::error::{ExportError, IdError};
 
 /// Ids of the cells of a circuit's second population begin behind those of the first, and so on.
 pub(crate) const OF_POPULATION: u64 = 1_000_000_000_000;
@@ -19,28 +19,6 @@ pub(crate) const OF_POPULATION: u64 = 1_000_000_000_000;
 pub(crate) enum Source {
     Files(Inputs),
     Circuit(Arc<Circuit>, Arc<Vec<Instance>>),
-}
-
-/// Cells that cannot be told apart by ids.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum IdError {
-    /// Two have one id.
-    #[error("{} and {} would both be segment {id}: give them ids of their own", cells[0], cells[1])]
-    Twice {
-        /// The cells.
-        cells: [String; 2],
-        /// The id.
-        id: u64,
-    },
-    /// Ids of populations would run into each other.
-    #[error("node {id} of {population}: ids of circuits must be below 10^12")]
-    TooLarge {
-        /// The node's id.
-        id: u64,
-        /// Its population.
-        population: String,
-    },
 }
 
 impl Source {

@@ -11,7 +11,6 @@ use neurotess_formats::{ReadOptions, Warning};
 use crate::error::Fault;
 use crate::event::Event;
 use crate::levels::{LevelOptions, TemplateMesh};
-use crate::run::Run;
 use crate::source::Source;
 
 /// Bytes of tracings that are kept; with those in use there may be more. A hundred templates of a circuit, of 20,000
@@ -54,13 +53,19 @@ struct Slot {
 }
 
 impl<'s> Templates<'s> {
-    pub(crate) fn new(run: &Run<'s>) -> Self {
+    /// `tell` is told of warnings.
+    pub(crate) fn new(
+        source: &'s Source,
+        options: LevelOptions,
+        stopped: &'s AtomicBool,
+        tell: &'s (dyn Fn(Event<'_>) + Sync),
+    ) -> Self {
         Self {
-            source: run.source,
-            options: run.levels,
-            stopped: run.stopped,
-            tell: run.tell,
-            uses: run.source.uses(),
+            source,
+            options,
+            stopped,
+            tell,
+            uses: source.uses(),
             warnings: Mutex::default(),
             kept: Mutex::default(),
         }

@@ -102,6 +102,9 @@ fn a_picture_that_is_opened_gives_its_look_and_view() {
     let parts = VisibleParts::Neurites;
     assert_eq!(state(&mut other).document.look, Look { parts, ..look });
     assert_eq!(state(&mut other).view, view);
+    // It is that of the picture, not of the next start.
+    assert!(!state(&mut other).settings.look.wireframe);
+    assert_ne!(state(&mut other).settings.look.background, [0, 0, 0]);
     run(&mut other, Command::Undo);
     assert!(!state(&mut other).document.look.wireframe);
     // From a side: another cell is fitted.

@@ -48,6 +48,20 @@ fn parts_of_files_are_served_to_any_page() {
         let (head, body) = answer(&url, "GET /a%20b?x=1 HTTP/1.1");
         assert!(head.starts_with("HTTP/1.1 200"), "{head}");
         assert_eq!(body, b"0123456789");
+        let (head, body) = answer(&url, "GET /a%20b HTTP/1.1\r\nRange: bytes=-3");
+        assert!(head.contains("Content-Range: bytes 7-9/10"), "{head}");
+        assert_eq!(body, b"789");
+        // Without the bytes, and what browsers ask before.
+        let (head, body) = answer(&url, "HEAD /a%20b HTTP/1.1");
+        assert!(head.starts_with("HTTP/1.1 200"), "{head}");
+        assert!(head.contains("Content-Length: 10"), "{head}");
+        assert!(body.is_empty());
+        let (head, _) = answer(&url, "OPTIONS /a%20b HTTP/1.1");
+        assert!(head.starts_with("HTTP/1.1 204"), "{head}");
+        assert!(
+            head.contains("Access-Control-Allow-Headers: Range"),
+            "{head}"
+        );
         // Long ones too have their length.
         let (head, body) = answer(&url, "GET /long HTTP/1.1\r\nRange: bytes=1-99999");
         assert!(head.contains("Content-Length: 99999"), "{head}");

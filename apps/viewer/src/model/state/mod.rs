@@ -18,6 +18,7 @@ mod placing;
 mod plots;
 mod pointing;
 mod split;
+mod taste;
 mod tools;
 mod traces;
 mod views;
@@ -32,7 +33,7 @@ use crate::model::changes::Changes;
 use crate::model::circuits::Circuits;
 use crate::model::command::{Command, Edit, Tab, Toggles};
 use crate::model::crossings::CrossingList;
-use crate::model::document::{Document, SourceId};
+use crate::model::document::{Document, Look, SourceId};
 use crate::model::history::History;
 use crate::model::markers::MarkerData;
 use crate::model::measuring::Measuring;
@@ -100,6 +101,8 @@ pub struct State {
     pub drawing: Drawing,
     /// Settings, which are kept between starts.
     pub settings: Settings,
+    /// The look that a picture gave, until it is changed.
+    look_of_picture: Option<Look>,
     /// Inputs of the panel that saves.
     pub save: SaveForm,
     /// The session's file, once there is one.
@@ -122,6 +125,7 @@ impl State {
             },
             changes: Changes::default(),
             writing: false,
+            look_of_picture: None,
             history: History::default(),
             sources: Sources::default(),
             circuits: Circuits::default(),
@@ -362,18 +366,6 @@ impl State {
         if self.document.y_down != before {
             self.run(Command::Home);
         }
-    }
-
-    /// Leaves taste only, for the next cell.
-    pub(crate) fn forget_look(&mut self) {
-        self.document.look = self.document.look.taste();
-        self.document.detail = self.document.detail.taste();
-        self.document.y_down = false;
-    }
-
-    fn remember(&mut self) {
-        self.settings.look = self.document.look.taste();
-        self.settings.detail = self.document.detail.taste();
     }
 
     fn forget_what_is_gone(&mut self) {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use neurotess::drawing::picture_of_png;
 use neurotess::options::Picture;
-use neurotess::options::words::Time;
+use neurotess::options::words::{Color, Time};
 
 use super::Viewer;
 use crate::model::command::{Command, Edit};
@@ -19,13 +19,14 @@ pub(super) fn is_picture(path: &Path) -> bool {
 
 impl Viewer {
     /// Shows cells as a picture does, in its options of these names. Somata and the camera are those of cells that are
-    /// opened afterwards.
+    /// opened afterwards. None of it is remembered for the next start.
     pub fn show_as(&mut self, picture: &Picture, given: &[String]) {
         let has = |name: &str| given.iter().any(|given| given == name);
         let shown = self.state.told().picture.with(picture, given);
+        let kept = self.state.settings.look.clone();
         self.state.run(Edit::TakePicture(Box::new(shown)));
+        self.state.keep_look(kept);
         if has("size") {
-            self.state.settings.picture_size = picture.look.size.0;
             self.state.save.picture.size = picture.look.size.0;
         }
         if has("soma") || has("ring") {
@@ -54,7 +55,9 @@ impl Viewer {
         }
         let all = Picture::keywords().into_iter().map(|(name, _)| name);
         let taken = all.filter(|name| NOT_TAKEN.iter().all(|(not, _)| not != name));
-        self.show_as(&recipe.picture, &taken.collect::<Vec<_>>());
+        let mut picture = recipe.picture.clone();
+        picture.colors.background = picture.background().map(Color);
+        self.show_as(&picture, &taken.collect::<Vec<_>>());
         self.state.messages.status = format!("As in {}", file.display());
         if !self.state.document.neurons.is_empty() {
             self.home();
