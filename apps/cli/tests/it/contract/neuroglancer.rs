@@ -107,7 +107,10 @@ fn warnings_are_counted_or_told() {
     let work = Work::new();
     work.file("1.swc", SMALL.replace("40 3 0.7 5", "40 3 -1 5"));
     let run = work.run("neuroglancer 1.swc -o out --json").exits(0);
-    assert_eq!(run.json()["warnings"].as_object().map(serde_json::Map::len), Some(1));
+    assert_eq!(
+        run.json()["warnings"].as_object().map(serde_json::Map::len),
+        Some(1)
+    );
     assert!(
         run.stderr().contains("cells concerned: "),
         "{}",
