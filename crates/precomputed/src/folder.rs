@@ -109,9 +109,11 @@ impl Folder {
         write_whole(&self.path(name), Existing::Replace, write)
     }
 
-    /// Whether all files of a cell, or of a shard, are there.
+    /// Whether all files of a cell, or of a shard, are there. None is empty, unless a disk lost what was in it.
     pub(crate) fn has(&self, unit: Files) -> bool {
-        self.files(unit).iter().all(|path| path.is_file())
+        let is_whole =
+            |path: &PathBuf| fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() > 0);
+        self.files(unit).iter().all(is_whole)
     }
 
     /// Files of a cell, or of a shard: fragments or shard of meshes, manifest, skeleton.

@@ -5,7 +5,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Component, Path, PathBuf};
 
 use tiny_http::{Header, Method, Request, Response, StatusCode};
@@ -62,6 +62,16 @@ impl Server {
             folder: root,
             address,
         })
+    }
+
+    /// Whether a port can be listened to.
+    ///
+    /// # Errors
+    /// It is taken.
+    pub fn check(port: u16) -> Result<(), ServeError> {
+        let bound = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+        let reason = bound.err().map(|error| error.to_string());
+        reason.map_or(Ok(()), |reason| Err(ServeError::Port { port, reason }))
     }
 
     /// Where browsers find it.

@@ -81,7 +81,7 @@ pub(crate) struct NeuroglancerArgs {
     )]
     pub(crate) synapses: Vec<String>,
     /// Where browsers will find FOLDER: https://…, gs://… or s3://… [default: where --serve serves it]
-    #[arg(long, value_name = "URL", help_heading = "View")]
+    #[arg(long, value_name = "URL", value_parser = address, help_heading = "View")]
     pub(crate) url: Option<String>,
     /// Then serve FOLDER to browsers of this machine, until Ctrl-C
     #[arg(long, help_heading = "View")]
@@ -89,6 +89,18 @@ pub(crate) struct NeuroglancerArgs {
     /// The port that --serve listens to
     #[arg(long, value_name = "P", default_value_t = 9000, help_heading = "View")]
     pub(crate) port: u16,
+}
+
+/// Where browsers, or what they read with, find a folder.
+fn address(text: &str) -> Result<String, String> {
+    let known = ["https://", "http://", "gs://", "s3://"];
+    let place = known.iter().find_map(|begin| text.strip_prefix(begin));
+    match place {
+        Some(place) if !place.is_empty() && !place.contains(char::is_whitespace) => {
+            Ok(text.trim_end_matches('/').to_owned())
+        }
+        _ => Err(format!("it begins with one of {}", known.join(", "))),
+    }
 }
 
 /// What `--json` prints.
@@ -107,6 +119,10 @@ struct Document {
 
 /// Runs the command.
 pub(crate) fn run(args: &NeuroglancerArgs, reporter: &Reporter) -> anyhow::Result<()> {
+    if args.serve {
+        // Said before the work, not after it.
+        Server::check(args.port)?;
+    }
     let link = match args.inputs.is_empty() {
         true => written_link(&args.out)?,
         false => write(args, reporter)?,

@@ -7,7 +7,7 @@ use clap::Args;
 use neurotess::batch::{Inputs, MORPHOLOGIES};
 use neurotess::drawing::picture_of_png;
 use neurotess::options::groups::DeviceOptions;
-use neurotess::options::words::Fit;
+use neurotess::options::words::{Color, Fit};
 use neurotess::options::{GivenPicture, Picture};
 use neurotess_viewer::CommandListener;
 use neurotess_viewer::picture::NOT_TAKEN;
@@ -113,7 +113,9 @@ fn picture(args: &ViewArgs, reporter: &Reporter) -> anyhow::Result<(Picture, Vec
             }
             let all = Picture::keywords().into_iter().map(|(name, _)| name);
             let taken = all.filter(|name| NOT_TAKEN.iter().all(|(not, _)| not != name));
-            (recipe.picture.with(picture, given), taken.collect())
+            let mut like = recipe.picture.with(picture, given);
+            like.colors.background = like.background().map(Color);
+            (like, taken.collect())
         }
         None => (picture.clone(), given.clone()),
     };

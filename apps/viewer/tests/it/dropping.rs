@@ -135,8 +135,11 @@ fn a_session_is_dropped() {
     run(&mut window, Command::SaveSession(file.clone()));
     let mut other = self::window();
     other.step();
-    drop_on(&mut other, &[&file]);
-    assert_eq!(names(&mut other), ["star", "granule"]);
+    // A cell beside it comes after its cells.
+    let beside = folder.path().join("beside.swc");
+    fs::write(&beside, CELL).expect("written");
+    drop_on(&mut other, &[&beside, &file]);
+    assert_eq!(names(&mut other), ["star", "granule", "beside"]);
     assert!(!state(&mut other).document.neurons.shows(0));
     fs::write(&file, "version = 1\ngrid = 3\n").expect("written");
     drop_on(&mut other, &[&file]);
@@ -145,7 +148,7 @@ fn a_session_is_dropped() {
             .why
             .contains("line 2")
     );
-    assert_eq!(names(&mut other).len(), 2, "nothing is lost");
+    assert_eq!(names(&mut other).len(), 3, "nothing is lost");
 }
 
 #[neurotess_testing::test(needs(neurotess_testing::full, gpu))]

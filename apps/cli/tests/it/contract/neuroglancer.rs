@@ -103,6 +103,26 @@ fn folders_are_left_alone_without_a_readable_input() {
 }
 
 #[neurotess_testing::test]
+fn addresses_and_ports_are_looked_at_before_the_work() {
+    let work = Work::new();
+    work.file("1.swc", SMALL);
+    for url in ["bucket/cells", "ftp://host/cells", "https://"] {
+        let run = work.run(&format!("neuroglancer 1.swc -o out --url {url}"));
+        let told = run.exits(2).stderr();
+        assert!(told.contains("it begins with one of https://"), "{told}");
+    }
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = taken.local_addr().expect("its number").port();
+    let run = work.run(&format!("neuroglancer 1.swc -o out --serve --port {port}"));
+    let told = run.exits(1).stderr();
+    assert!(
+        told.contains(&format!("port {port} cannot be used")),
+        "{told}"
+    );
+    assert!(!work.path("out").exists());
+}
+
+#[neurotess_testing::test]
 fn warnings_are_counted_or_told() {
     let work = Work::new();
     work.file("1.swc", SMALL.replace("40 3 0.7 5", "40 3 -1 5"));

@@ -38,11 +38,13 @@ impl Viewer {
             self.waiting.extend(paths);
             return;
         }
-        let sessions: Vec<&PathBuf> = paths.iter().filter(|p| session::is_session(p)).collect();
+        let (sessions, paths): (Vec<PathBuf>, Vec<PathBuf>) = paths
+            .into_iter()
+            .partition(|path| session::is_session(path));
         let session = match &sessions[..] {
             [] => None,
             [one] => match Session::read(one) {
-                Ok(session) => Some((one.to_path_buf(), session)),
+                Ok(session) => Some((one.clone(), session)),
                 Err(e) => {
                     let why = e.to_string();
                     self.state.problem(one.display().to_string(), why);
@@ -63,6 +65,8 @@ impl Viewer {
         let request = match session {
             Some((file, session)) => {
                 self.take_session(&file, &session);
+                // Cells beside those of the session come after them.
+                self.waiting.extend(paths);
                 let request = OpenRequest::of_session(&session);
                 loading.session = Some(Box::new(session));
                 request
