@@ -73,6 +73,8 @@ def test_edits_are_those_of_the_command(
 
 
 def test_what_edits_do(cell: nt.Morphology) -> None:
+    table = cell.to_table()
+    assert len(nt.edit(table, scale=2.0)) == len(cell)
     assert nt.edit(cell) == cell and cell.edits == ()
     turned = nt.edit(cell, rotate={"z": 90}, mirror="y")
     x, y, z = cell.points.T

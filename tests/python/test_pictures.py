@@ -488,6 +488,8 @@ def test_pictures_tell_where_points_are(cell: nt.Morphology) -> None:
         # The same camera by value, of another picture.
         again = nt.render(cell, color_by="type", transparent=True, camera=picture.camera, **look)
         assert (np.asarray(again) == np.asarray(picture)).all()
+    with pytest.raises(ValueError, match=r"points of shape .*: \(n, 3\) is needed"):
+        picture.project(cell.points[:, :2])
     assert np.isnan(picture.project([[0, 1e6, 0]])).any() == (not picture.camera["orthographic"])
 
 
@@ -512,8 +514,9 @@ def test_pictures_know_their_size_on_paper(cell: nt.Morphology, tmp_path: Path) 
     picture.save(tmp_path / "plain.png")
     assert b"pHYs" not in (tmp_path / "plain.png").read_bytes()
     assert nt.render(cell, like=tmp_path / "plain.png").size == picture.size
-    with pytest.raises(ValueError, match="dpi=0"):
-        picture.to_png(dpi=0)
+    for dpi in (0, "300"):
+        with pytest.raises(ValueError, match=f"dpi={dpi}"):
+            picture.to_png(dpi=dpi)  # type: ignore[arg-type]
 
 
 def test_films_have_a_length_and_are_saved(cell: nt.Morphology, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from . import _neurotess, _options
 from ._cells import cell_of
 from ._errors import NeurotessWarning, OptionError, missing_file
 from ._morphology import Morphology, _warn
-from ._sources import package_of, read_cell
+from ._sources import is_table, package_of, read_cell
 from ._units import plain
 from ._errors import with_given
 
@@ -120,7 +120,7 @@ def edit(
         edits = _neurotess.Edits(_options.keywords(keywords))
     except OptionError as error:
         raise with_given(error, given) from None
-    if isinstance(cell, Morphology) or package_of(cell):
+    if isinstance(cell, Morphology) or package_of(cell) or is_table(cell):
         known = cell_of(cell)
     else:
         known = Morphology(read_cell(cell, None, None, False, bad_radii=edits.mends_radii))

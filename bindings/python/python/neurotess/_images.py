@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from numbers import Real
 
 from . import _neurotess
 from ._packages import needed
@@ -84,6 +85,8 @@ class Image:
         if self.camera is None:
             raise ValueError("the picture does not tell its camera: only one that render or film drew does")
         points = np.atleast_2d(np.asarray(points, dtype=float))
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"points of shape {points.shape}: (n, 3) is needed")
         eye, target, up = (np.array(self.camera[name], dtype=float) for name in ("eye", "target", "up"))
         forward = target - eye
         distance = float(np.linalg.norm(forward))
@@ -160,7 +163,7 @@ def _with_size(content: bytes, dpi: float) -> bytes:
     import struct
     import zlib
 
-    if not 0 < dpi < 1e6:
+    if not (isinstance(dpi, Real) and 0 < dpi < 1e6):
         raise ValueError(f"dpi={dpi}: a number above 0 is needed")
     body = b"pHYs" + struct.pack(">IIB", *[round(dpi * METER)] * 2, 1)
     chunk = struct.pack(">I", 9) + body + struct.pack(">I", zlib.crc32(body))
