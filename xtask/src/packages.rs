@@ -29,13 +29,8 @@ const COMBINATIONS: &[(&str, &str)] = &[
     ("neurotess-python", "gpu"),
 ];
 
-/// Those of the quick lane: the library with nothing optional, the core of pages in browsers, and the command with
-/// pictures but without a window.
-const QUICK: &[(&str, &str)] = &[
-    ("neurotess", ""),
-    ("neurotess-web", ""),
-    ("neurotess-cli", "render"),
-];
+/// Those of the quick lane: the library with nothing optional, and the core of pages in browsers.
+const QUICK: &[(&str, &str)] = &[("neurotess", ""), ("neurotess-web", "")];
 
 /// Checks each combination of features of a lane. The check is clippy's: what that has checked of others' packages
 /// is used again.
