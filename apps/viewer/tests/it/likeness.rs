@@ -1,7 +1,5 @@
 //! Saved pictures tell how they were made, in the words of all options.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -15,7 +13,7 @@ use neurotess_viewer::command::Edit;
 use neurotess_viewer::document::{ColorBy, Look, VisibleParts};
 use neurotess_viewer::save::PictureFile;
 
-use crate::common::{Window, gpu, run, set_look, state, undrawn, with_samples};
+use crate::common::{Window, gpu, pixels, run, set_look, state, undrawn, with_samples};
 
 fn save(window: &mut Window, out: &Path) -> Picture {
     let picture = PictureFile {
@@ -28,14 +26,6 @@ fn save(window: &mut Window, out: &Path) -> Picture {
     };
     run(window, Command::SavePicture(picture));
     picture_of_png(out).expect("told").picture
-}
-
-fn pixels(file: &Path) -> Vec<u8> {
-    let file = BufReader::new(File::open(file).expect("a file"));
-    let mut reader = png::Decoder::new(file).read_info().expect("PNG");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    reader.next_frame(&mut pixels).expect("pixels");
-    pixels
 }
 
 #[neurotess_testing::test(needs(gpu))]

@@ -12,8 +12,8 @@ use neurotess_viewer::save::PictureFile;
 use neurotess_viewer::{Command, draw_session};
 
 use crate::common::{
-    Window, differing, drawn, gpu, picture, rest, run, settle, snapshot, state, viewer, wait,
-    window, with_samples,
+    Window, differing, drawn, gpu, picture, pixels, rest, run, settle, snapshot, state, viewer,
+    wait, window, with_samples,
 };
 
 /// A box around the cell, half of it: the picture shows where it is and where it is not.
@@ -169,17 +169,14 @@ fn sessions_and_saved_pictures_have_them() {
         let drawn =
             draw_session(&session, &options(name), None, &|_| Ok(None), true).expect("drawn");
         assert_eq!(drawn.failures, []);
-        let picture = fs::read(folder.path().join(name)).expect("a picture");
+        let picture = pixels(&folder.path().join(name));
         // The second time without the mesh.
         let lines = text.split("[[mesh]]").next().expect("cells come later");
         let rest = text.split("[playback]").nth(1).expect("playback");
         fs::write(&session, format!("{lines}[playback]{rest}")).expect("written");
         picture
     });
-    assert_eq!(
-        fs::read(folder.path().join("window.png")).expect("saved"),
-        with
-    );
+    assert!(pixels(&folder.path().join("window.png")) == with);
     assert!(with != without);
     fs::write(&session, &text).expect("written");
     let mut other = self::window();

@@ -21,8 +21,8 @@ use neurotess_viewer::{Command, draw_session};
 
 use crate::common::circuit::write_with_synapses;
 use crate::common::{
-    Window, click, differing, drawn, gpu, picture, rest, run, set_look, settle, snapshot, state,
-    viewer, wait, window, with_samples,
+    Window, click, differing, drawn, gpu, picture, pixels, rest, run, set_look, settle, snapshot,
+    state, viewer, wait, window, with_samples,
 };
 
 /// Cells of the circuit, and synapses onto each.
@@ -503,11 +503,14 @@ fn sessions_and_saved_pictures_have_synapses_and_points() {
     )
     .expect("drawn");
     assert!(drawn.failures.is_empty(), "{:?}", drawn.failures);
-    let bytes = |name: &str| fs::read(at(name)).expect("a picture");
-    assert!(bytes("saved.png") == bytes("drawn.png"), "the same picture");
+    let pixels = |name: &str| pixels(&at(name));
+    assert!(
+        pixels("saved.png") == pixels("drawn.png"),
+        "the same picture"
+    );
     run(&mut window, Edit::ShowSynapses(false));
     run(&mut window, Command::SavePicture(save("without.png")));
-    assert!(bytes("saved.png") != bytes("without.png"));
+    assert!(pixels("saved.png") != pixels("without.png"));
 
     let mut other = self::window();
     other.step();

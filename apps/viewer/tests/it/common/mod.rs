@@ -3,7 +3,9 @@
 
 pub(crate) mod circuit;
 
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -262,4 +264,13 @@ pub(crate) fn drawn(window: &mut Window) -> Vec<u8> {
     let rows = (rect.top() as u32)..(rect.bottom() as u32);
     let pixels = rows.flat_map(|y| (left..right).map(move |x| (x, y)));
     pixels.flat_map(|(x, y)| image.get_pixel(x, y).0).collect()
+}
+
+/// The pixels of a saved picture, whose file also tells how it was drawn.
+pub fn pixels(file: &Path) -> Vec<u8> {
+    let file = BufReader::new(File::open(file).expect("a file"));
+    let mut reader = png::Decoder::new(file).read_info().expect("PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut pixels).expect("pixels");
+    pixels
 }
