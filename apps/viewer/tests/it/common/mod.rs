@@ -267,7 +267,7 @@ pub(crate) fn drawn(window: &mut Window) -> Vec<u8> {
 }
 
 /// The pixels of a saved picture, whose file also tells how it was drawn.
-pub fn pixels(file: &Path) -> Vec<u8> {
+pub(crate) fn pixels(file: &Path) -> Vec<u8> {
     let file = BufReader::new(File::open(file).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("PNG");
     let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
