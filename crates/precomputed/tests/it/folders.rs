@@ -102,14 +102,22 @@ fn other_cells_are_not_mixed_in() {
     assert_eq!(report.written, 2);
     let files = folders.files("out");
     assert!(!files.contains_key("mesh/1") && files.contains_key("mesh/3.index"));
-    // Nor where a run was killed before it wrote down what it is of.
-    fs::remove_file(folders.path("out/neurotess.json")).expect("removed");
+    // Nor where a run was killed while it removed them: by then it has noted that they are of nothing.
+    let plan = folders.path("out/neurotess.json");
+    fs::write(&plan, "{}\n").expect("written");
     fs::write(folders.path("out/mesh/9"), "old").expect("written");
     let refused = folders.export("out").resume(true).run(|_| ());
-    assert!(matches!(refused, Err(ExportError::Exists(_))));
+    assert!(matches!(refused, Err(ExportError::Other(_))));
     let export = folders.export("out").replace(true);
     assert_eq!(export.run(|_| ()).expect("written").written, 2);
     assert!(!folders.path("out/mesh/9").exists());
+    // Files of which nothing says that they were written here stay.
+    fs::remove_file(plan).expect("removed");
+    for replace in [false, true] {
+        let refused = folders.export("out").replace(replace).run(|_| ());
+        assert!(matches!(refused, Err(ExportError::Foreign(_))));
+    }
+    assert!(folders.path("out/mesh/3").exists());
 }
 
 #[neurotess_testing::test]
