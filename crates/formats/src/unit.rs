@@ -1,9 +1,12 @@
 //! Units of length by the names that files give them.
 
+/// Micrometers in a nanometer.
+pub(crate) const NANOMETER: f64 = 1e-3;
+
 /// Micrometers in a unit; `None` if the name is none of a length.
 pub(crate) fn micrometers(unit: &str) -> Option<f64> {
     Some(match unit.trim().to_lowercase().as_str() {
-        "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => 1e-3,
+        "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => NANOMETER,
         // Micro has two code points, and programs that know neither write u.
         "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "microns" | "micrometer" | "micrometers"
         | "micrometre" | "micrometres" => 1.0,

@@ -38,7 +38,7 @@ pub enum ExportError {
     #[error("{} lies in the folder that is written: give another folder", .0.display())]
     Within(PathBuf),
     /// No tracing can be read; why the first cannot.
-    #[error("{0}; no other input can be read either, so nothing was written")]
+    #[error("{0}; no input can be read, so nothing was written")]
     Unreadable(InputError),
     /// A file that all cells share was not written.
     #[error(transparent)]

@@ -14,8 +14,7 @@ use neurotess_mesh::draco::{DracoError, decode};
 use neurotess_mesh::{Faces, SurfaceMesh, SurfaceVertex};
 use serde::Deserialize;
 
-/// µm in a nm.
-const NANOMETER: f64 = 1e-3;
+use crate::skeleton::NM;
 
 /// Why a mesh was not read: `what: what to do`.
 #[derive(Debug, thiserror::Error)]
@@ -319,7 +318,7 @@ impl Joined {
         let places: Vec<DVec3> = self
             .places
             .iter()
-            .map(|&p| (linear * p + translation) * NANOMETER)
+            .map(|&p| (linear * p + translation) / NM)
             .collect();
         if !places.iter().all(|p| p.is_finite()) {
             return Err(Broken("a vertex is no place"));

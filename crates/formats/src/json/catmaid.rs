@@ -17,11 +17,9 @@ use super::{Source, in_range};
 use crate::forest::Forest;
 use crate::sample::Sample;
 use crate::text::Located;
+use crate::unit::NANOMETER;
 use crate::warning::Warnings;
 use crate::{Fault, Format, Read, ReadError, ReadOptions, read_text};
-
-/// Micrometers in a nanometer.
-const NANOMETER: f64 = 1e-3;
 
 /// Reads a file that is in memory. `name` is what errors call it; the morphology gets its stem.
 ///

@@ -10,10 +10,8 @@ use super::info::{Attribute, Info};
 use crate::Fault;
 use crate::forest::Forest;
 use crate::sample::Sample;
+use crate::unit::NANOMETER;
 use crate::warning::Warnings;
-
-/// µm in a nm.
-const NANOMETER: f64 = 1e-3;
 
 /// The points of a skeleton, whose numbers are their places from 1 on.
 pub(super) fn forest(bytes: &[u8], info: &Info, warnings: &mut Warnings) -> Result<Forest, Fault> {
