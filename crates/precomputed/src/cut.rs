@@ -24,13 +24,28 @@ pub(crate) struct Part {
 }
 
 impl GridMesh {
-    /// Leaves out triangles of which two corners are in one place.
+    /// Leaves out triangles of which two corners are in one place, and makes one of the two corners, so that what is beside
+    /// such a triangle meets: by places, and by numbers.
     pub(crate) fn without_collapsed(mut self) -> Self {
-        let corners = &self.corners;
-        self.triangles.retain(|triangle| {
-            let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
-            a != b && b != c && c != a
-        });
+        let mut one: HashMap<u32, u32> = HashMap::new();
+        for triangle in &self.triangles {
+            for i in 0..3 {
+                let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+                if self.corners[a as usize] == self.corners[b as usize] {
+                    let [a, b] = [a, b].map(|corner| last(&one, corner));
+                    if a != b {
+                        one.insert(a.max(b), a.min(b));
+                    }
+                }
+            }
+        }
+        if !one.is_empty() {
+            for triangle in &mut self.triangles {
+                *triangle = triangle.map(|corner| last(&one, corner));
+            }
+            self.triangles
+                .retain(|[a, b, c]| a != b && b != c && c != a);
+        }
         self
     }
 
@@ -121,6 +136,14 @@ impl GridMesh {
     }
 }
 
+/// The corner that stands for one, and for all in its place that it was joined with.
+fn last(one: &HashMap<u32, u32>, mut corner: u32) -> u32 {
+    while let Some(&next) = one.get(&corner) {
+        corner = next;
+    }
+    corner
+}
+
 /// The normal of a triangle, not of unit length.
 fn normal([a, b, c]: [[i64; 3]; 3]) -> [i64; 3] {
     let [u, v] = [b, c].map(|corner| -> [i64; 3] { std::array::from_fn(|i| corner[i] - a[i]) });
@@ -176,15 +199,43 @@ mod tests {
         mesh.triangles.iter().map(of).sum()
     }
 
+    /// By the numbers of corners.
     fn is_closed(mesh: &GridMesh) -> bool {
-        let mut edges: BTreeMap<([i64; 3], [i64; 3]), i32> = BTreeMap::new();
+        let mut edges: BTreeMap<(u32, u32), i32> = BTreeMap::new();
         for t in &mesh.triangles {
             for i in 0..3 {
-                let [a, b] = [t[i], t[(i + 1) % 3]].map(|c| mesh.corners[c as usize]);
+                let (a, b) = (t[i], t[(i + 1) % 3]);
                 *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
             }
         }
         edges.values().all(|&sum| sum == 0)
+    }
+
+    #[test]
+    fn corners_in_one_place_become_one() {
+        let mut mesh = octahedron();
+        // The edge between 0 and 2 has two more corners, both where 0 is.
+        let there = mesh.corners[0];
+        mesh.corners.extend([there, there]);
+        let edge = |t: &[u32; 3]| t.contains(&0) && t.contains(&2);
+        let (beside, mut rest): (Vec<_>, Vec<_>) = mesh.triangles.into_iter().partition(edge);
+        assert_eq!(beside.len(), 2);
+        for triangle in beside {
+            for [first, second] in [[0, 6], [6, 7], [7, 2]] {
+                let put = |corner| match corner {
+                    0 => first,
+                    2 => second,
+                    other => other,
+                };
+                rest.push(triangle.map(put));
+            }
+        }
+        mesh.triangles = rest;
+        assert!(is_closed(&mesh));
+        let joined = mesh.without_collapsed();
+        assert_eq!(joined.triangles.len(), octahedron().triangles.len());
+        assert!(is_closed(&joined));
+        assert_eq!(volume(&joined), volume(&octahedron()));
     }
 
     #[test]

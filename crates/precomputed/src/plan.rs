@@ -15,7 +15,7 @@ use crate::source::Source;
 use neurotess_formats::precomputed::murmur;
 
 /// Raised when files of the same cells and options are others than before.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Files that are written at once, and the cells in them.
 pub(crate) struct Unit {

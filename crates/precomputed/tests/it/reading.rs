@@ -8,6 +8,7 @@ use neurotess_formats::{ReadOptions, read};
 use neurotess_mesh::{SurfaceMesh, check};
 use neurotess_morphology::shape;
 use neurotess_precomputed::{LevelOptions, read_mesh};
+use neurotess_testing::{shared, shared_data};
 use serde_json::json;
 
 use crate::Folders;
@@ -15,6 +16,22 @@ use crate::circuits::many;
 
 fn mesh(path: &Path) -> SurfaceMesh {
     read_mesh(path).expect("a mesh").expect("read")
+}
+
+/// Short edges of real tracings collapse on the grid.
+#[neurotess_testing::test(needs(shared))]
+fn real_cells_are_closed() {
+    let folders = Folders::with(0);
+    let files = ["172993.swc", "IF4_140201.CNG.swc"];
+    for file in files {
+        let from = shared_data().join("swc").join(file);
+        fs::copy(from, folders.path("in").join(file)).expect("copied");
+    }
+    folders.export("out").run(|_| ()).expect("written");
+    for (id, file) in (1..).zip(files) {
+        let report = check(&mesh(&folders.path(&format!("out/mesh/{id}"))));
+        assert!(report.closed && report.edge_manifold, "{file}: {report:?}");
+    }
 }
 
 fn length(path: &Path) -> f64 {
